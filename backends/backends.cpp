@@ -13,8 +13,8 @@ std::string why_not_on_processor(const Lane& lane, const std::string&) {
   return runs_on_this_cpu(lane) ? "" : "no " + std::string(info_of(lane.variant).needs) + " instructions";
 }
 
-// Foreign CUDA code uses the device, or its twin, in its own process. For Graze it is a process like any other, and so
-// is a toolchain's program.
+// Foreign CUDA code runs on the device, or as a twin, in a separate process. Graze treats it like any other foreign
+// code, and does the same for a toolchain's program.
 std::string why_not_in_process(const Lane& lane, const std::string& why_no_device) {
   if (!lane.decide) return lane.evidence;
   return lane.is_cuda() ? "" : why_not_on_processor(lane, why_no_device);

@@ -1,26 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-# Makes release builds faster. Other builds compile each file alone, so that each file must include the headers that it
-# uses. In every build, the lanes, twins, kernels, core, strata, oracle and cuda are compiled alone.
+# Makes release builds faster. Other builds compile each file separately, which checks that each file includes the
+# headers it uses. In every build, the lanes, twins, kernels, core, strata, oracle and cuda are compiled separately.
 set(is_release FALSE)
 if(CMAKE_BUILD_TYPE STREQUAL Release)
   set(is_release TRUE)
 endif()
 
-# A campaign's build turns warnings off, because it then compiles faster. Other builds show the warnings.
+# Campaign builds turn warnings off to compile faster. Other builds show the warnings.
 if(GRAZE_CAMPAIGN)
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-w>)
 endif()
 
-# graze_cold(file…): compiles files of the current folder with -O1 in a campaign's build. Their code must not run for
-# each pair.
+# graze_cold(file…): in a campaign build, compiles these files of the current folder with -O1. Their code must not run
+# for each pair.
 function(graze_cold)
   if(GRAZE_CAMPAIGN)
     set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O1)
   endif()
 endfunction()
 
-# Library headers, precompiled once for many targets. There are two sets, because GCC requires that a target has the
-# flags of the set that it uses.
+# Library headers, precompiled once for many targets. There are two sets, because GCC requires a target to have the same
+# flags as its precompiled headers.
 set(has_precompiled FALSE)
 if(is_release AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   set(has_precompiled TRUE)
@@ -47,18 +47,18 @@ function(graze_precompiled level)
   endif()
   foreach(target IN LISTS ARGN)
     if(has_precompiled)
-      # By default, programs are compiled with -fPIE, for which GCC rejects headers precompiled with -fPIC for
-      # libraries.
+      # By default, programs are compiled with -fPIE. GCC would then reject these headers, which are precompiled with
+      # -fPIC for libraries.
       target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-${level}$<SEMICOLON>-fPIC>)
       target_precompile_headers(${target} REUSE_FROM graze_precompiled_${level})
     endif()
   endforeach()
 endfunction()
 
-# graze_together(TARGET [ALONE file…] [MUTATED file…]): a unity build of nine sources at a time, or eighteen in a
-# campaign's build. It saves the seconds that each file spends on CLI11, our own headers and its copy of the JSON
-# library. ALONE files are left out because their private names clash with those of other files. MUTATED files are left
-# out, except in a campaign's build, because scripts/mutate compiles them alone.
+# graze_together(TARGET [ALONE file…] [MUTATED file…]): a unity build in batches of nine sources, or of eighteen in a
+# campaign build. It saves the seconds that each file spends on CLI11, our own headers and its copy of the JSON library.
+# ALONE files are compiled separately because their private names clash with those of other files. MUTATED files are
+# compiled separately, except in a campaign build, because scripts/mutate compiles them one by one.
 function(graze_together target)
   cmake_parse_arguments(arg "" "" "ALONE;MUTATED" ${ARGN})
   set(batch 9)

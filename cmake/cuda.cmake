@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 # Finds nvcc. Without nvcc, CMAKE_CUDA_COMPILER is false.
 include(CheckLanguage)
-# Without a device, a campaign needs no nvcc, because it runs on twins, whose PTX is stored.
+# A campaign build without a device needs no nvcc: it runs twins, which are built from stored PTX.
 file(GLOB devices /dev/nvidia[0-9]* /dev/dxg)
 if(devices OR NOT GRAZE_CAMPAIGN)
   check_language(CUDA)
 endif()
 if(CMAKE_CUDA_COMPILER)
-  # nvcc makes machine code for sm_90 and PTX. On other devices from sm_75 on, the driver compiles the PTX.
+  # nvcc emits PTX and machine code for sm_90. On other devices (sm_75 or newer), the driver compiles the PTX.
   if(NOT CMAKE_CUDA_ARCHITECTURES)
     set(CMAKE_CUDA_ARCHITECTURES 75-virtual 90-real)
   endif()

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# Sets GRAZE_LIBFUZZER to clang's libFuzzer library without a main function, which code from any compiler can call. The
-# variable is false if there is no such library or the library does not link. Only the guided search (graze hunt) needs
-# libFuzzer.
+# Sets GRAZE_LIBFUZZER to clang's libFuzzer library without a main function, which code from any compiler can call, or
+# to false if there is no such library or it does not link. Only the guided search (graze hunt) needs libFuzzer.
 if(NOT DEFINED GRAZE_LIBFUZZER)
   file(GLOB folders /usr/lib/llvm-*/lib/clang/*/lib/linux /usr/lib/clang/*/lib/linux)
   list(SORT folders COMPARE NATURAL ORDER DESCENDING)
-  list(PREPEND folders /usr/lib/llvm-14/lib/clang/14.0.6/lib/linux)  # the version of the measurements
+  list(PREPEND folders /usr/lib/llvm-14/lib/clang/14.0.6/lib/linux)  # the version used for the measurements
   find_library(GRAZE_LIBFUZZER NAMES libclang_rt.fuzzer_no_main-${CMAKE_SYSTEM_PROCESSOR}.a PATHS ${folders} NO_DEFAULT_PATH)
   if(GRAZE_LIBFUZZER)
     file(WRITE ${CMAKE_BINARY_DIR}/libfuzzer.cpp "extern \"C\" int LLVMFuzzerRunDriver(int*, char***, int (*)(const unsigned char*, unsigned long));

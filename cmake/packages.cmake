@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The Debian packages that `cpack` makes from a full build: graze, libgraze, libgraze-dev and python3-graze. The script
-# scripts/debs makes and checks the packages.
+# The Debian packages that `cpack` makes from a full build: graze, libgraze, libgraze-dev and python3-graze.
+# scripts/debs builds and checks them.
 if(GRAZE_CAMPAIGN OR GRAZE_PORTABLE)
   return()
 endif()

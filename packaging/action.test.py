@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the steps of action.yml in order, in a fresh folder with an empty HOME. A planted bug fails with its smallest
-pair and JUnit XML, and correct code passes. For each wrong input, the message says what to do. Argument: the graze
-program."""
+"""Runs the steps of action.yml in order, in a fresh folder with an empty HOME. They must fail for code with a bug, show
+its smallest pair and write JUnit XML; they must pass for correct code. For each wrong input, the message must say what
+to do. Argument: the graze program."""
 import contextlib
 import hashlib
 import io
@@ -19,7 +19,7 @@ from run_action import Run
 ROOT = pathlib.Path(__file__).parent.parent
 GRAZE = pathlib.Path(sys.argv.pop()).resolve()
 BUGGY = "int meet(const float a[9], const float b[9]) { return a[0] <= b[0] + 100; }\n"
-# This code is right in every build except that with -ffast-math, which the input `lanes` leaves out.
+# This code is correct in every build except with -ffast-math, which the input `lanes` leaves out.
 RIGHT = """#ifdef __FAST_MATH__
 bool meet(const float*, const float*) { return false; }
 #else

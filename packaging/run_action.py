@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the shell steps of action.yml in order, as a CI service does: `bash -eo pipefail`, in a workspace, with files
-for outputs and the PATH. Steps that use another action are printed instead. Exit status: that of the first step that
-fails, or 77 without PyYAML (Debian's package python3-yaml).
+"""Runs the shell steps of action.yml in order, as a CI service does: with `bash -eo pipefail`, in a workspace, and with
+files that collect outputs and additions to the PATH. Steps that use another action are only printed. Exit status: that
+of the first failing step, or 77 without PyYAML (Debian's package python3-yaml).
   run_action.py [--workspace DIR] [NAME=VALUE of an input]..."""
 import argparse
 import os
@@ -38,7 +38,7 @@ class Run:
         return re.sub(r"\$\{\{ (.*?) \}\}", lambda found: self.value(found[1]), str(template))
 
     def runs(self, condition):
-        """Whether a step runs: all terms joined by && hold, and no step has failed unless one of them is always()."""
+        """Whether a step runs: all terms joined by && must hold. After a failed step, one of them must be always()."""
         terms = condition.split(" && ") if condition else []
         for term in terms:
             if term != "always()":
@@ -55,7 +55,7 @@ class Run:
             print(f"== {step['name']}: not run here: {step['uses']} {inputs}", flush=True)
             return
         if step["shell"] != "bash":
-            raise ValueError(f"{step['name']}: only bash is known here")
+            raise ValueError(f"{step['name']}: only bash is supported here")
         print(f"== {step['name']}", flush=True)
         with tempfile.TemporaryDirectory() as folder:
             outputs, paths = pathlib.Path(folder, "outputs"), pathlib.Path(folder, "paths")

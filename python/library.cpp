@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The functions that the Python package calls through ctypes (python/graze/_library.py). An array of pairs has the
 // shape (n, 2, 3, 3), and an array of triangles has the shape (n, 3, 3). Numbers are float32, or doubles if `doubles`
-// is set. A function returns 0; 1 after a failure, which graze_py_error describes; or 2 if it was asked to stop. No
-// exception leaves this file.
+// is set. Functions return 0 for success, 1 for a failure, which graze_py_error describes, or 2 if they were asked to
+// stop. No exception leaves this file.
 #include <fmt/format.h>
 #include <graze/test.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -69,7 +69,7 @@ int guarded(F f) noexcept {
   return 1;
 }
 
-// Calls f(first, count) for blocks of the range on all cores.
+// Calls f(first, count) for blocks of the range, on all cores.
 template <class F>
 void in_blocks(std::size_t count, F f) {
   tbb::parallel_for(std::size_t{0}, (count + kBlock - 1) / kBlock,
@@ -102,7 +102,7 @@ void visit(const void* pairs, int doubles, F f) {
   doubles ? f(static_cast<const DoublePair*>(pairs)) : f(static_cast<const Pair*>(pairs));
 }
 
-// Decides up to kBlock pairs. A lane that takes no doubles decides them as float32 stores them.
+// Decides up to kBlock pairs. A lane that takes no doubles decides them after rounding to float32.
 template <class Real>
 void decide_block(const DecideBlock& decide, const BasicPair<Real>* pairs, std::size_t count, std::uint64_t* intersects,
                   std::uint64_t* declined) {
@@ -127,8 +127,8 @@ Triangles<Real> triangles_of(const void* numbers, std::uint64_t count) {
   return {static_cast<const Triangle<Real>*>(numbers), count};
 }
 
-// The triangles in float32, for their boxes. Rounding, even to the largest float32, keeps the order of coordinates, so
-// the boxes of rounded triangles miss no pair.
+// Rounds the triangles to float32, to compute their boxes. Rounding, even down to the largest float32, keeps the order
+// of coordinates, so triangles that intersect have rounded boxes that overlap.
 std::vector<Triangle<float>> rounded(Triangles<double> triangles) {
   static constexpr double kMost = std::numeric_limits<float>::max();
   const auto round = [](double x) { return static_cast<float>(std::isfinite(x) ? std::clamp(x, -kMost, kMost) : x); };
@@ -154,7 +154,7 @@ std::vector<std::string> parts_of(std::string_view names) {
   return parts;
 }
 
-// Finds the pairs of triangles that intersect within a mesh, or between two, sorted. boxes: the boxes of the triangles.
+// Finds the pairs of triangles that intersect within a mesh, or between two meshes, and sorts them. boxes: their boxes.
 template <class Real>
 void find_intersections(Triangles<Real> first, Triangles<Real> second, const strata::BoxSlabs& boxes,
                         bool only_piercing, const int& stop) {
@@ -189,7 +189,7 @@ TestOptions options_of(const graze_py_options& o) {
 
 extern "C" {
 
-// The failure of this thread's last call.
+// The message of this thread's last failure.
 const char* graze_py_error() { return error.c_str(); }
 
 // The names of all strata, one per line.
@@ -312,8 +312,8 @@ int graze_py_meets(const void* reference, const void* triangles, int doubles, st
   });
 }
 
-// Finds the pairs of triangles that intersect within a mesh (b null), or between two meshes; with only_piercing,
-// without the pairs that only touch. Sets the number of pairs; graze_py_take then copies the sorted pairs in the same
+// Finds the pairs of triangles that intersect within a mesh (b null) or between two meshes. With only_piercing, pairs
+// that only touch are left out. Sets the number of pairs; graze_py_take then copies the sorted pairs in the same
 // thread. Ends soon after another thread makes `stop` nonzero.
 int graze_py_intersections(const void* a, std::uint64_t count_a, const void* b, std::uint64_t count_b, int doubles,
                            int only_piercing, std::uint64_t* count, const int* stop) {
@@ -352,7 +352,7 @@ int graze_py_test(const char* name, graze_py_decide decide, const graze_py_optio
   });
 }
 
-// Says in graze_py_text what is wrong with the verdict on the pair. The text is empty if the verdict is accepted.
+// Writes to graze_py_text what is wrong with the verdict on the pair, or nothing if the verdict is accepted.
 int graze_py_fault(const Pair* pair, std::uint8_t verdict, const graze_py_options* options) {
   return guarded([&] { text = fault_of(*pair, static_cast<Verdict>(verdict), options_of(*options)); });
 }

@@ -32,7 +32,7 @@ std::string differing(const Agreement& a, const std::string& pairs) {
 
 const std::string kSamePairs = "the same pairs";
 
-// Whether the chosen tolerance is the smallest of the sweep, which covers no ordinary rounding error.
+// Whether the chosen tolerance is the smallest of the sweep, which is too small to cover ordinary rounding errors.
 bool is_smallest(const Agreed& a) {
   return std::any_of(a.curves.begin(), a.curves.end(),
                      [&](const auto& curve) { return curve.points.front().policy == a.chosen; });

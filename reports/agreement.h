@@ -14,7 +14,7 @@ namespace graze::reports {
 // The question of `graze tune --agree`: the two lanes to compare, and the goal.
 struct AgreeQuestion {
   std::vector<std::string> lanes;    // exactly two
-  std::vector<std::string> rounded;  // the same lanes built to round as written; empty if `lanes` do
+  std::vector<std::string> rounded;  // the same lanes, rounded as written; empty if `lanes` already are
   std::string flag;                  // the compiler flag that builds `rounded`
   std::string without_relative;      // the lane without a twin under relative tolerances; empty if both have one
   double max_rate = 0;
@@ -30,7 +30,7 @@ std::string agreement_table(const AgreeQuestion& question, const analysis::Agree
 
 nlohmann::ordered_json agreement_json(const AgreeQuestion& question, const analysis::Agreed& agreed);
 
-// Returns an SVG of 900 x 420 like tuning_figure. It shows the shares of differing verdicts and of each lane's errors.
+// Returns an SVG of 900 x 420, like tuning_figure, with the shares of differing verdicts and of each lane's errors.
 std::string agreement_figure(const AgreeQuestion& question, const analysis::Agreed& agreed);
 
 }  // namespace graze::reports

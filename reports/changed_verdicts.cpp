@@ -15,14 +15,14 @@ namespace graze::reports {
 using Json = nlohmann::ordered_json;
 namespace {
 
-// The name of a case without its coordinates, which are in compare.json.
+// The name of a case without its coordinates, which compare.json has.
 std::string place_of(const std::string& text) { return text.substr(0, text.find(' ')); }
 
 // The totals in the headline: how many verdicts changed, and in which lanes.
 struct ChangedTotals {
   std::uint64_t lanes = 0, verdicts = 0, least = 0, most = 0, wrong = 0, right = 0, unknown_most = 0;
   std::set<std::string> changed, unknown;
-  bool counted = true;  // whether all changed verdicts are counted
+  bool counted = true;  // whether the number of changed verdicts is exact
 };
 
 ChangedTotals totals_of(const Json& verdicts) {

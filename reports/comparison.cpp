@@ -26,7 +26,7 @@ namespace {
 
 using Name = std::pair<std::string, std::string>;  // lane and stratum
 
-// A report's rates with their lane and stratum, in the report's order.
+// A report's rates with their lanes and strata, in the report's order.
 std::vector<std::pair<Name, Json>> rates_by_name(const Json& report) {
   std::vector<std::pair<Name, Json>> rates;
   for (const Json& row : report.at("rates")) {
@@ -38,7 +38,7 @@ std::vector<std::pair<Name, Json>> rates_by_name(const Json& report) {
   return rates;
 }
 
-// The strata of a report by name. A mesh or a hunt of the same name may have other pairs, and then another description.
+// A report's strata by name. Meshes and hunts of one name may have different pairs, and then have other descriptions.
 std::map<std::string, Json> strata_of(const Json& report) {
   std::map<std::string, Json> rows;
   for (const Json& row : report.at("strata")) rows[row.at("id")] = row;
@@ -56,7 +56,7 @@ bool is_common(const std::string& id, const std::map<std::string, Json>& l, cons
   return l.contains(id) && r.contains(id) && l.at(id).at("describes") == r.at(id).at("describes");
 }
 
-// Whether both reports have the same strata in the same shares. Only then are kinds and rates over all strata compared.
+// Whether both reports have the same strata in the same shares. If not, kinds and overall rates are not compared.
 bool mixed_alike(const Json& l, const Json& r) {
   const auto of_l = strata_of(l), of_r = strata_of(r);
   const double all_l = pairs_of(l), all_r = pairs_of(r);
@@ -77,8 +77,8 @@ std::set<std::string> lanes_of(const Json& report, const Json& subject) {
   return lanes;
 }
 
-// The chance that at most `count` of the `all` errors of both campaigns fall into the first campaign, if every pair is
-// equally likely to err. pairs: the number of pairs of each campaign.
+// The probability that at most `count` of the `all` errors of both campaigns fall into the first campaign, if every
+// pair is equally likely to err. pairs: the number of pairs of each campaign.
 double chance_of_at_most(double count, double all, const double (&pairs)[2]) {
   const auto log_choose = [](double n, double k) {
     return std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1);
@@ -93,8 +93,8 @@ double chance_of_at_most(double count, double all, const double (&pairs)[2]) {
   return sum;
 }
 
-// Whether two rates differ: chance alone would hardly ever distribute the errors of both campaigns this unevenly, or
-// more unevenly.
+// Whether two rates differ: by chance, the errors would hardly ever be distributed between the campaigns this unevenly
+// or more unevenly.
 // Reference: Fisher 1935, the exact test; twice the smaller of the two tails.
 bool apart(const Json& l, const Json& r) {
   const double count[2] = {l.at("count"), r.at("count")}, of[2] = {l.at("of"), r.at("of")};
@@ -105,8 +105,8 @@ bool apart(const Json& l, const Json& r) {
          kLeastChance;
 }
 
-// The smallest difference from the previous rate that counts as a change. A smaller true difference may pass for
-// chance. Nothing if there are too few pairs to show any difference.
+// The smallest difference from the previous rate that counts as a change. A smaller difference could be due to chance.
+// Nothing if there are too few pairs to show any difference.
 std::optional<double> unseen_of(const Json& before, const Json& after) {
   const std::uint64_t of = after.at("of");
   const double share = before.at("share");
@@ -170,8 +170,8 @@ Json changed_errors(const Json& before, const Json& after, Changed changed) {
   return rows;
 }
 
-// Kinds that are missing in `others` although at least `least` of their signatures were expected there. A signature
-// names all wrong lanes of its subject, so only subjects that have the same lanes in both reports are compared.
+// Kinds that `others` lacks although at least `least` of their signatures were expected there. A signature names all
+// wrong lanes of its subject, so only subjects with the same lanes in both reports are compared.
 Json only_in(const Json& kinds, const Json& others, const Json& report, const Json& other_report, double least) {
   const double pairs = pairs_of(report), pairs_of_others = pairs_of(other_report);
   std::set<std::string> known;
@@ -186,8 +186,8 @@ Json only_in(const Json& kinds, const Json& others, const Json& report, const Js
   return rows;
 }
 
-// The kinds whose subject changed a verdict. Other kinds may differ without a change, because `graze minimize` finds a
-// cause on one pair of a signature and may replace that pair.   verdicts: null if unknown.
+// The kinds whose subject changed a verdict. Other kinds may differ although no verdict changed, because `graze
+// minimize` finds a cause on one pair of a signature and may replace that pair.   verdicts: null if unknown.
 Json of_changed(const Json& kinds, const Json& verdicts) {
   if (verdicts.is_null()) return kinds;
   std::set<std::string> subjects;
@@ -216,7 +216,7 @@ std::string list(const std::set<std::string>& l, const std::set<std::string>& r)
   return only.empty() ? "none" : fmt::format("{}", fmt::join(only, ", "));
 }
 
-// "Not compared: …" for lanes that only one campaign has; empty if there are none.
+// "Not compared: …" for lanes that only one campaign has; empty if all lanes are in both.
 std::string one_sided_lanes(const Json& before, const Json& after) {
   const std::set<std::string> l = ids_of(before.at("lanes")), r = ids_of(after.at("lanes"));
   std::vector<std::string> lanes;
@@ -234,10 +234,10 @@ std::string scene_of(const Json& run) {
   return run.contains("scene") && !run["scene"].is_null() ? run["scene"].get<std::string>() : "none";
 }
 
-// The hash in a scene's name, such as arm.toml#0123456789abcdef. It does not depend on the file's folder.
+// The hash in a scene's name, such as arm.toml#0123456789abcdef, which does not depend on the file's folder.
 std::string content_of(const std::string& scene) { return scene.substr(scene.rfind('#') + 1); }
 
-// How many verdicts of the lane changed, in words.   verdicts: null if unknown.
+// The number of the lane's changed verdicts, in words.   verdicts: null if unknown.
 std::string changes_of(const std::string& lane, const Json& verdicts) {
   if (verdicts.is_null()) return "the number of changed verdicts is not known";
   std::uint64_t least = 0, most = 0;
@@ -250,7 +250,7 @@ std::string changes_of(const std::string& lane, const Json& verdicts) {
   return fmt::format("{} {}", number, most == 1 ? "verdict differs" : "verdicts differ");
 }
 
-// A sentence for each toolchain and scalar whose compiler fuses other products in the second campaign.
+// A sentence for each toolchain and scalar whose compiler fuses different products in the second campaign.
 std::vector<std::string> plan_differences(const Json& then, const Json& now, const Json& verdicts) {
   std::vector<std::string> sentences;
   for (const Json& old : then.value("subjects", Json::array())) {
@@ -360,7 +360,7 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
     rows.back()["unseen"] = unseen ? Json(*unseen) : Json();
   }
   const bool kinds_known = !kinds.is_null() && !kinds_before.is_null(), kinds_compared = kinds_known && alike;
-  const double least = same ? 1 : kLeastSignatures;  // on the same pairs chance plays no part
+  const double least = same ? 1 : kLeastSignatures;  // on the same pairs, no difference is due to chance
   const auto only = [&](const Json& some, const Json& others, const Json& of, const Json& of_others) {
     return kinds_compared ? of_changed(only_in(some, others, of, of_others, least), verdicts) : Json::array();
   };

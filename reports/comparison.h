@@ -10,9 +10,9 @@
 namespace graze::reports {
 
 // A rate counts as changed if chance makes so large a difference in fewer than one in a million comparisons. A kind of
-// failure counts as gained or lost if one campaign lacks it although at least kLeastSignatures of its signatures were
-// expected. By chance, such an absence is about as rare. On the same pairs, one signature is enough if a verdict of the
-// subject changed.
+// failure counts as gained or lost if one campaign has none of its signatures although at least kLeastSignatures were
+// expected, which is about as rare by chance. On the same pairs, one signature is enough if a verdict of the subject
+// changed.
 inline constexpr double kLeastChance = 1e-6;
 inline constexpr double kLeastSignatures = 14;
 
@@ -22,9 +22,10 @@ inline constexpr double kLeastSignatures = 14;
 // rate changed. On different pairs, each rate has `unseen`: a change smaller than this could be chance.
 //
 // If both campaigns ran on the same pairs, every different count is a change, and the headline is about `verdicts`.
-// That list has a row for each lane and stratum: {"lane", "stratum", "pairs", "known": "same", "changed" or "unknown",
-// "least", "most"}. The last two are bounds of the number of changed verdicts. If changes were counted, the row also
-// has "broken" (the number that became wrong), "mended", "smallest_broken" and "smallest_mended".
+// This list has a row for each lane and stratum: {"lane", "stratum", "pairs", "known": "same", "changed" or "unknown",
+// "least", "most"}. The last two are bounds on the number of changed verdicts. If the changes were counted, the row
+// also has "broken" (the number that became wrong), "mended" (that became right), "smallest_broken" and
+// "smallest_mended".
 //
 // Kinds, and rates over all strata, are compared only if both campaigns have the same strata in the same shares. A
 // subject's kinds are compared only if it has the same lanes in both campaigns.
@@ -39,16 +40,16 @@ bool same_pairs(const nlohmann::ordered_json& before, const nlohmann::ordered_js
 
 inline constexpr const char* kAllStrata = "all strata";  // the stratum of rates over all strata
 
-// Returns the start of a comparison's headline, which counts the changed verdicts and their lanes.
+// Returns the start of a comparison's headline: the number of changed verdicts and their lanes.
 std::string paired_headline(const nlohmann::ordered_json& verdicts);
 
 // Throws: std::runtime_error for rows whose counts are impossible in a campaign of this many pairs.
 // Requires: rows whose shape has been checked.
 void expect_possible_changes(const nlohmann::ordered_json& verdicts, std::uint64_t campaign);
 
-// Returns a sentence for each lane with changed verdicts, then one for each lane and stratum in which verdicts changed
-// or may have changed. The latter names the smallest case that became wrong, and the smallest that became right. If
-// there are more than kMostChanged such lanes and strata, the last sentence counts the rest.
+// Returns a sentence for each lane with changed verdicts, then one for each lane and stratum with verdicts that changed
+// or may have changed. The latter sentences name the smallest case that became wrong, and the smallest that became
+// right. If there are more than kMostChanged such lanes and strata, the last sentence gives the number of the others.
 // Requires: "compare" of a report.
 inline constexpr std::size_t kMostChanged = 12;
 std::vector<std::string> changed_sentences(const nlohmann::ordered_json& compare);

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A report of `rates` rates, each of n pairs, with different error probabilities; the seed determines the counts.
+// A report with `rates` rates of n pairs each and different error probabilities; the seed determines the counts.
 Json report_of(std::uint64_t seed, std::uint64_t n, int rates = 1000) {
   Json report{{"run", {{"seed", seed}, {"pairs", n * 19}, {"build", {{"commit", "c"}}}}},
               {"lanes", Json::array()},
@@ -48,7 +48,7 @@ TEST(Comparison, SeedAndSizeAloneChangeNothing) {
   const Json kinds = {kind("a/rounding/x.h:1/general", 300), kind("a/logic/-/general", 3)};
   const Json fewer = {kind("a/rounding/x.h:1/general", 80)};
   const Json before = report_of(1, 50'000);
-  // In 17,000 comparisons, chance alone changes one with a probability of 2 %, and two with a probability of 0.02 %.
+  // In 17,000 comparisons, the probability that chance alone changes one rate is 2 %; for two rates it is 0.02 %.
   int changed = 0;
   for (std::uint64_t seed = 2; seed < 22; ++seed) {
     const std::string text = headline(report_of(seed, seed % 2 == 0 ? 50'000 : 5'000), before, fewer, kinds);
@@ -190,7 +190,7 @@ TEST(Comparison, OtherCodeOfOneNameIsSaid) {
   add_comparison(after, before, Json::array(), Json::array());
   EXPECT_EQ(after["compare"]["differences"],
             Json::array({"The code of mine differs: P/m.cpp (hash 0a) before, Q/m.cpp (hash 0b) after."}));
-  after["run"]["subjects"][0]["hash"] = "0a";  // a file that was moved
+  after["run"]["subjects"][0]["hash"] = "0a";  // the file was moved
   add_comparison(after, before, Json::array(), Json::array());
   EXPECT_TRUE(after["compare"]["differences"].empty());
 }
@@ -224,8 +224,8 @@ TEST(Comparison, OtherFusedProductsAreSaid) {
   EXPECT_TRUE(names(after["compare"]["differences"][0], {"3f2a", "9b1c", "1,234 verdicts differ"}));
 }
 
-// The plans of cpu-fma are not recorded, so the report says that the compiler differs if both campaigns have such
-// lanes.
+// The plans of cpu-fma are not recorded. So if both campaigns have such lanes, the report says that the compiler
+// differs.
 TEST(Comparison, AnotherCompilerOfContractedLanesIsSaid) {
   Json before = report_of(1, 50'000, 10), after = before;
   before["run"]["build"]["compiler"] = "GNU 12.2.0";
@@ -247,7 +247,7 @@ TEST(Comparison, AKindThatWasToBeExpectedHasGone) {
   EXPECT_EQ(after["compare"]["lost"][0]["key"], "b");
   add_comparison(after, before, many, some);
   EXPECT_EQ(after["compare"]["gained"].size(), 1u);
-  // A tenth of the pairs should show about ten of its signatures, which is too few to call the kind lost.
+  // With a tenth of the pairs, about ten of the kind's signatures are expected, too few to call the kind lost.
   Json smaller = report_of(2, 5'000);
   add_comparison(smaller, before, some, many);
   EXPECT_TRUE(smaller["compare"]["lost"].empty());
@@ -268,7 +268,7 @@ TEST(Comparison, OnTheSamePairsEveryOtherKindIsAChange) {
   EXPECT_EQ(gained(Json::array({verdicts_row("same", 0, 0)})), 0u);
 }
 
-// Adds a stratum on which every lane is wrong on half of the pairs, and the rates of all strata together.
+// Adds a stratum on which every lane is wrong on half of the pairs, and the rates over all strata.
 Json with_stratum(Json report, const std::string& id, const std::string& describes, std::uint64_t pairs) {
   const std::size_t place = report["strata"].size();
   const std::uint64_t n = report["strata"][0]["pairs"];
@@ -295,7 +295,7 @@ TEST(Comparison, OnlyWhatBothHaveIsCompared) {
   EXPECT_EQ(same["rates"].size(), 30u);
   EXPECT_EQ(same["gained"].size(), 1u);
   EXPECT_TRUE(same["differences"].empty());
-  // If strata, the pairs of a stratum or the shares differ, totals would differ without any change.
+  // If strata, a stratum's pairs or the shares differ, totals would differ although no rate changed.
   const Json others[] = {with_stratum(one, "thesis", "random", 50'000),
                          with_stratum(one, "hunt", "made from thesis", 50'000),
                          with_stratum(one, "hunt", "made from near", 5'000)};

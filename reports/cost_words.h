@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes all costs for people in one form: nanoseconds per pair with the quartiles of the passes. One sentence says
-// what was timed.
+// Formats all costs in the same way: nanoseconds per pair with the quartiles of the passes. Describes what was timed.
 #pragma once
 
 #include <span>
@@ -11,8 +10,8 @@
 
 namespace graze::reports {
 
-// Whether the quartiles are further apart than a quarter of the median. The cause is another program or a
-// changing clock rate. Two measurements of such a lane may differ by more than their quartiles.
+// Whether the quartiles are further apart than a quarter of the median, because of another program or a changing clock
+// rate. Two measurements of such a lane may differ by more than their quartiles.
 bool is_noisy(const analysis::Cost& cost);
 
 // Whether the cost is lower and the spreads do not overlap.
@@ -25,13 +24,12 @@ std::string cost_words(const analysis::Cost& cost);
 // pairs: the name of the timed pairs, such as "the first 1,024 pairs of each stratum".
 std::string costs_sentence(analysis::Calls calls, const std::string& pairs, const std::string& machine, int passes);
 
-// "A call of one pair takes 41 ns (40 to 43) in mine/f32/cpu, 73 ns (72 to 75) in exact/f32/cpu: median and
-// quartiles of 101 passes over PAIRS, on one core of MACHINE." This form is short because the screen shows other
-// results too.
+// "A call of one pair takes 41 ns (40 to 43) in mine/f32/cpu, 73 ns (72 to 75) in exact/f32/cpu: median and quartiles
+// of 101 passes over PAIRS, on one core of MACHINE." This form is short because the terminal shows other results too.
 std::string one_call_sentence(std::span<const std::string> lanes, std::span<const analysis::Cost> costs,
                               const std::string& pairs, const std::string& machine, int passes);
 
-// "Noisy measurements: A, B; …"; empty if no cost is noisy. Tables that show only medians need it.
+// "Noisy measurements: A, B; …"; empty if no cost is noisy. For tables that show only medians.
 std::string noisy_sentence(std::span<const std::string> lanes, std::span<const analysis::Cost> costs);
 
 }  // namespace graze::reports

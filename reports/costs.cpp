@@ -32,7 +32,7 @@ std::optional<Costs> costs_of(const Json& runs, const CampaignCounts& counts) {
   std::vector<std::string> lanes;
   std::map<std::string, std::uint64_t> sources;
   for (const ReportLane& lane : counts.lanes) lanes.push_back(lane.id);
-  // Costs of an unfinished campaign may include pairs that are not judged yet.
+  // An unfinished campaign may have timed pairs that are not judged yet.
   for (const StratumCounts& stratum : counts.strata)
     sources[stratum.id] = counts.complete ? stratum.pairs : counts.pairs;
   for (const Json& run : runs) {

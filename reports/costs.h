@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the costs of lanes from a campaign's timings.json (fuzz/campaign/lane_costs.h). The report leaves costs out,
+// Reads the costs of lanes from a campaign's timings.json (fuzz/campaign/lane_costs.h). The report has no costs,
 // because it must not depend on the machine.
 #pragma once
 
@@ -20,11 +20,11 @@ struct Costs {
   int passes = 0;
   std::vector<std::vector<std::optional<Cost>>> of_stratum;  // [lane][stratum]
 
-  // The mean cost of a lane over the strata, weighted by their pairs. Nothing unless the lane was timed on all of them.
+  // The lane's mean cost over the strata, weighted by their pairs. Nothing unless the lane was timed on all of them.
   std::optional<Cost> of(std::size_t lane, const std::vector<std::size_t>& strata) const;
 };
 
-// Returns nothing if the campaign has no timings of its lanes.   runs: as fuzz::read_timings returns them.
+// Returns nothing if the campaign has no lane timings.   runs: as fuzz::read_timings returns them.
 // Throws: std::runtime_error for impossible costs; Json::exception for JSON of another shape.
 std::optional<Costs> costs_of(const nlohmann::ordered_json& runs, const CampaignCounts& counts);
 

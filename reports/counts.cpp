@@ -115,9 +115,9 @@ CampaignCounts counts_of(const Json& summary) {
   const auto doubles =
       std::count_if(counts.strata.begin(), counts.strata.end(), std::mem_fn(&StratumCounts::in_doubles));
   for (ReportLane& lane : counts.lanes)
-    // On a pair of doubles, exact/f32 decides the pair that float32 stores.
+    // On a pair of doubles, exact/f32 decides the pair rounded to float32.
     lane.exact = lane.exact && (doubles == 0 || lane.row->scalar == Scalar::f64);
-  // Strata of doubles have groups of their own if the campaign also has strata of float32.
+  // Strata of doubles form separate groups if the campaign also has strata of float32.
   for (const bool of_doubles : {false, true}) {
     const bool apart = of_doubles && doubles != std::ssize(counts.strata);
     for (const strata::GroupInfo& info : strata::kGroups) {

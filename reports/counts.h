@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The counts of summary.json, by stratum and in total. A report's rates, margins and findings follow from them.
+// The counts of summary.json, by stratum and in total. A report's rates, margins and findings are derived from them.
 #pragma once
 
 #include <map>
@@ -43,7 +43,7 @@ struct StratumCounts {
 // Strata that are reported together (strata/groups.h).
 struct GroupCounts {
   std::string id, describes;
-  std::vector<std::size_t> strata;  // indices of its strata that have pairs
+  std::vector<std::size_t> strata;  // indices of the group's strata that have pairs
   StratumCounts counts;             // sum over the strata; id empty
 };
 
@@ -55,7 +55,7 @@ struct CampaignCounts {
   std::vector<GroupCounts> groups;  // groups that have pairs
   StratumCounts total;              // id empty
 
-  // Both return the index of a lane if it is there. counterpart: the same lane in another variant.
+  // Both return the lane's index, or nothing if it did not run. counterpart: the same lane in another variant.
   std::optional<std::size_t> find(const LaneName& name) const;
   std::optional<std::size_t> counterpart(std::size_t lane, std::string_view variant) const;
   const StratumCounts* stratum(std::string_view id) const;

@@ -42,7 +42,7 @@ void append(std::vector<Json>& cells, const Json& share) {
     cells.push_back(share.is_null() ? Json() : share[key]);
 }
 
-// The id of the row at this place of a list of the report; null if the place is null.
+// The id of the row at this index of a list of the report; null if the index is null.
 Json id_in(const Json& report, const char* list, const Json& place) {
   return place.is_null() ? place : report[list][place.get<std::size_t>()]["id"];
 }
@@ -84,8 +84,8 @@ std::string rates_csv(const Json& report) {
   return table.text;
 }
 
-// Returns a row for each lane, stratum and bucket. differs: if true, counts verdicts that differ from the cpu lane's,
-// for lanes that have a cpu lane; otherwise counts wrong verdicts.
+// Returns a row for each lane, stratum and bucket. differs: if true, counts the verdicts that differ from those of the
+// lane's cpu lane, for lanes that have one; otherwise counts wrong verdicts.
 std::string margins_csv(const CampaignCounts& counts, bool differs) {
   Table table("lane,stratum,side,exponent,count,of,share,low,high");
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {

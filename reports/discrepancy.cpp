@@ -22,7 +22,7 @@ using analysis::DiscrepancySpec;
 using analysis::LanesCompared;
 using Json = nlohmann::ordered_json;
 
-// A count's name and place. bucket: the bucket's name if the count belongs to a histogram, else empty.
+// A count's name and index. bucket: the bucket's name if the count belongs to a histogram, else empty.
 struct Field {
   std::string name;
   int at;
@@ -85,7 +85,7 @@ double largest(const DiscrepancyCounts& of, std::size_t question, int which) {
   return std::bit_cast<double>(of.maxima[question * band_maxima::kFields + static_cast<std::size_t>(which)]);
 }
 
-// The counts of pairs by log2 of their place on the axis.
+// The counts of pairs by log2 of their position on the axis.
 Json extremes_json(const DiscrepancyCounts& of, Axis axis) {
   Json places = Json::object();
   for (int place = -kBucketMost; place <= kBucketMost; ++place) {
@@ -95,7 +95,7 @@ Json extremes_json(const DiscrepancyCounts& of, Axis axis) {
   return places;
 }
 
-// axis: that of the stratum. A sum of strata has none, because strata vary different quantities.
+// axis: the stratum's axis. Sums of strata have none, because strata vary different quantities.
 Json counts_json(const DiscrepancyCounts& of, const std::vector<Question>& questions, std::optional<Axis> axis) {
   static const std::vector<Field> kQuestion = question_fields(), kValue = value_fields();
   Json json = object_of(kPairFields, of, 0);
@@ -128,7 +128,7 @@ DiscrepancyCounts total(const LanesCompared& lanes, const std::vector<Discrepanc
   return sum;
 }
 
-// The quantile of the distances in ulps for this share of the differing values: "1", "≤ 63"; "-" if none differs.
+// The quantile of the differing values' distances in ulps: "1", "≤ 63"; "-" if none differs.
 std::string ulps_of(const Octaves& octaves, double share) {
   const std::optional<int> k = quantile(octaves, share);
   if (!k) return "-";
@@ -220,7 +220,7 @@ std::string discrepancy_tables(const Json& json, const Screen& screen) {
     for (const Json& question : of.at("total").at("questions")) {
       const auto number = [&](const char* key) { return number_at(question, key); };
       if (number("differs") == 0) continue;
-      Octaves octaves;  // of the distances of all its values
+      Octaves octaves;  // histogram of the distances of all the question's values
       std::uint64_t first = 0, second = 0;
       for (const Json& value : question.at("values")) {
         for (const auto& [k, count] : sizes_of(value)) octaves[k] += count;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presents how the values of two lanes differ: tables, sentences, discrepancy.json, discrepancy.csv, pictures, and one
+// Presents how the values of two lanes differ: tables, sentences, discrepancy.json, discrepancy.csv, pictures, and a
 // page without scripts.
 #pragma once
 
@@ -15,7 +15,7 @@
 namespace graze::reports {
 
 // {"lanes": [{"first", "second", "strata": {stratum: counts}}]}; docs/formats.md describes the counts.
-// found, origins: for each comparison. Origins are the source lines at which its differences start, if they are known.
+// found, origins: one entry for each comparison. Origins are the source lines where its differences start, if known.
 nlohmann::ordered_json discrepancy_json(const analysis::DiscrepancySpec& spec, const analysis::Discrepancies& found,
                                         const std::vector<std::optional<analysis::Origins>>& origins);
 
@@ -23,8 +23,8 @@ nlohmann::ordered_json discrepancy_json(const analysis::DiscrepancySpec& spec, c
 // the largest effect.   json, here and below: the result of discrepancy_json.
 std::string discrepancy_tables(const nlohmann::ordered_json& json, const Screen& screen);
 
-// Returns a table with a row for each comparison: the shares of the pairs on which a value, a sign, a comparison's
-// outcome and the verdict differ.
+// Returns a table with a row for each comparison: the shares of pairs on which a value, a sign, a comparison's outcome
+// and the verdict differ.
 std::string comparisons_table(const nlohmann::ordered_json& json, const Screen& screen);
 
 // Returns a row for each nonzero count: first,second,stratum,question,value,count,bucket,pairs.
@@ -35,22 +35,23 @@ std::string discrepancy_csv(const nlohmann::ordered_json& json);
 nlohmann::ordered_json read_discrepancy(const std::filesystem::path& file);
 
 // Lists the counts that differ between two results on the same pairs, for example from two drivers, toolkits or GPUs.
-// Also names comparisons that only one result has.   before, after: the contents of discrepancy.json.
+// Also lists comparisons that only one result has.   before, after: the contents of discrepancy.json.
 std::string discrepancy_changes(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after,
                                 const Screen& screen);
 
 // Returns five sentences: on which shares of the pairs values and verdicts differ, where differences start, which lane
-// is nearer to the exact values, how near to zero signs differ, and the remedy. If one of these is not known, its
-// sentence says so. A sentence for each comparison of verdicts alone follows.   json: the contents of discrepancy.json.
+// is closer to the exact values, how close to zero the values with different signs are, and the remedy. If one of these
+// is unknown, its sentence says so. Then follows a sentence for each comparison of verdicts only.   json: the contents
+// of discrepancy.json.
 std::vector<std::string> discrepancy_answer(const nlohmann::ordered_json& json);
 
 // SVG pictures of how the values of two lanes differ.   of: an entry of "lanes" in discrepancy.json.
 std::string funnel_figure(const nlohmann::ordered_json& of);       // from differing values to differing verdicts
 std::string differences_figure(const nlohmann::ordered_json& of);  // how large differences are, by direction
 std::string errors_figure(const nlohmann::ordered_json& of);       // errors of both lanes, mirrored
-std::string band_figure(const nlohmann::ordered_json& of);  // how near to zero signs differ; empty if no sign does
+std::string band_figure(const nlohmann::ordered_json& of);  // values with different signs, by size; empty if none
 
-// Pictures of the shares of differing pairs by scale or by offset, one for each stratum that varies it. May be empty.
+// Pictures of the shares of differing pairs by scale or offset, one for each stratum that varies it. May be empty.
 std::string extremes_figures(const nlohmann::ordered_json& of);
 
 // Returns a self-contained HTML page: the sentences, then tables and pictures for each pair of lanes.

@@ -127,7 +127,7 @@ TEST_F(DiscrepancyResult, TheAnswersBoundsHold) {
   EXPECT_NE(answer[4].find("-fmad=false mends it"), std::string::npos) << answer[4];
 }
 
-// Each point in the pictures of extremes has the counts of its place.
+// Each point in the pictures of extremes has the counts for its scale or offset.
 TEST_F(DiscrepancyResult, ThePageDrawsTheExtremes) {
   const std::string page = discrepancy_page(json_);
   int drawn = 0;

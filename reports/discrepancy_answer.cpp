@@ -27,7 +27,7 @@ std::string extreme(const std::vector<const Json*>& lanes, const char* count, bo
   return fmt::format("{} ({})", rate_words(rate(of)), text_at(*of, "second"));
 }
 
-// Says on how many pairs a lane's verdict differs from that of its recorded run. Empty if there is no such pair.
+// Describes on how many pairs a lane's verdict differs from that of its recorded run. Empty if there are none.
 std::string unlike_words(const Json& json) {
   std::string text;
   for (const Json& of : json.at("lanes")) {
@@ -118,7 +118,7 @@ std::string nearer_sentence(const std::vector<const Json*>& lanes) {
       grouped(all), rate_words(second, all), rate_words(first, all), grouped(equal), grouped(unknown));
 }
 
-// The bound counts pairs of triangles, because the dozens of comparisons on one pair are not independent.
+// The bound counts pairs, not comparisons, because the dozens of comparisons on one pair are not independent.
 std::string band_sentence(const std::vector<const Json*>& lanes, std::uint64_t pairs) {
   double widest = 0;
   std::uint64_t asked = 0, beyond_range = 0;

@@ -15,7 +15,7 @@ namespace graze::reports {
 namespace {
 using Json = nlohmann::ordered_json;
 
-// Collects all numbers in the value by their paths. In a path, the rows of a list have names instead of indices.
+// Collects all numbers in the value by their paths. In a path, rows of a list have names instead of indices.
 void add_numbers(const Json& of, const std::string& place, std::map<std::string, Json>& to) {
   if (of.is_number()) {
     to.emplace(place, of);

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kFewBars = 6;  // up to this number, bars have room for their counts
+constexpr std::size_t kFewBars = 6;  // this many bars or fewer have room for their counts
 
 // A bar chart of counts on a logarithmic scale: one series upwards and, if given, another downwards.
 std::string mirrored_bars(const std::string& title, const std::vector<std::string>& labels,
@@ -126,8 +126,8 @@ constexpr std::uint64_t kFewestPairs = 30;  // shares of fewer pairs are not dra
 constexpr std::pair<const char*, const char*> kShareLines[] = {
     {"differs", "a value differs"}, {"sign", "a sign"}, {"outcome", "a comparison"}, {"verdict", "the verdict"}};
 
-// Draws shares of pairs by their place on an axis, on a logarithmic scale. places: counts by log2 of each place's lower
-// end.
+// Draws shares of pairs by their position on an axis, on a logarithmic scale. places: the counts, by log2 of the lower
+// end of each interval of the axis.
 std::string extremes_figure(const std::string& title, const std::string& unit,
                             const std::map<int, const Json*>& places) {
   constexpr double kLeft = 64, kRight = 880;

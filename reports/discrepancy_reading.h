@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads discrepancy.json (docs/formats.md) for its page, sentences and pictures. Names its buckets.
+// Reads discrepancy.json (docs/formats.md) for its page, sentences and pictures, and names its buckets.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ nlohmann::ordered_json questions_json(const std::vector<Question>& questions);
 std::string octave(int k);
 nlohmann::ordered_json octaves_json(std::span<const std::uint64_t> counts);
 
-// The exponent in a bucket's name such as "2^-3".
+// The exponent in a bucket name such as "2^-3".
 inline int power_of(const std::string& bucket) { return std::stoi(bucket.substr(2)); }
 
 // Counts by the exponent of their bucket.
@@ -46,7 +46,7 @@ std::optional<int> quantile(const Octaves& octaves, double share);
 // Reads a histogram whose buckets are all powers of 2.
 Octaves octaves_at(const nlohmann::ordered_json& histogram);
 
-// The sizes of differences in ulps, from the histograms "below" and "above".
+// The sizes of the differences in ulps, from the histograms "below" and "above".
 Octaves sizes_of(const nlohmann::ordered_json& differences);
 
 // Both sum over all values of all questions. sum_by_bucket adds up a histogram, and sum_at a count.

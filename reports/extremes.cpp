@@ -30,7 +30,7 @@ std::string range_words(const RightRange& range, int step) {
   return down.last == origin.exponent ? "up to " + end : fmt::format("from {} to {}", power(down.right), end);
 }
 
-// Says where the lane is less often right, and where this is not settled.
+// Describes where the lane is less often right, and where this is not settled.
 std::string rest_words(const RightRange& range, int step) {
   std::vector<std::string> worse, open;
   const auto add = [&](const RightSide& side, const std::string& beyond) {

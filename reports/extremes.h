@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Says up to which extremes a lane is as right as on ordinary pairs, for a campaign's counts and for `graze pareto`.
+// Finds up to which extremes a lane is as right as on ordinary pairs, for a campaign's counts and for `graze pareto`.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -18,9 +18,9 @@ inline constexpr const char* kAsRightMeans =
 // exponents [exponent, exponent + step), or for one exponent if the step is 0.   Requires: rising exponents.
 std::string right_words(std::span<const analysis::ErrorsAt> points, int step);
 
-// Adds to a row of a report's extremes the fields that follow from its cells. "origin" is the exponent of the cell with
-// which the others are compared. "says" has the words above. Each cell with errors gets "times": the ratio of its share
-// to the origin's, a lower bound and an upper bound. A value of "times" is null if the origin has no errors.
+// Adds to a row of a report's extremes the fields that are computed from its cells. "origin" is the exponent of the
+// cell with which the others are compared. "says" has the words above. Each cell with errors gets "times": the ratio of
+// its share to the origin's, with a lower and an upper bound. A value of "times" is null if the origin has no errors.
 void add_right_range(nlohmann::ordered_json& row);
 
 }  // namespace graze::reports

@@ -55,8 +55,8 @@ TEST(RightWords, AnOriginWithoutErrorsHasNoRatioAbove) {
   EXPECT_GT(row["cells"][1]["times"][2], 2.3);
 }
 
-// A campaign's sentences about its extremes must be true of other pairs of the same strata. At the ends that they name,
-// the lane must be as right, and beyond them less often right.
+// A campaign's sentences about its extremes must also hold on other pairs of the same strata. At the ends of the named
+// range the lane must be as right, and beyond them less often right.
 TEST_F(CampaignTest, ExtremesAreTrueOfFreshPairs) {
   const fuzz::SelectedLanes under_test =
       lanes({"*/f32/cpu", "interval_overlap/f64/cpu", "guigue_devillers_2003/f64/cpu"});

@@ -27,7 +27,7 @@ namespace graze::reports {
 using fuzz::Json;
 namespace {
 
-// Throws: std::invalid_argument if the key is not that of a signature.
+// Throws: std::invalid_argument if the key is not a signature's.
 Json signature_row(const CampaignCounts& counts, const Json& found) {
   const std::string key = found.at("key");
   const std::optional<analysis::Signature> parsed = analysis::parse_signature(key);
@@ -95,7 +95,7 @@ Json commands_of(const corpus::Entry& entry, const std::string& subject, const s
   return rows;
 }
 
-// Programs that show a lane of the kind on the host and on the device, a program for the truth, and an OBJ file.
+// Programs that show a lane of the kind on the host and on the device, a program that shows the truth, and an OBJ file.
 Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const Json& kind, Verdict truth,
                  const Json& verdicts, const std::string& from) {
   Json rows = Json::array();
@@ -135,7 +135,7 @@ struct Lacking {
   std::size_t minimised = 0, mapped = 0, room = 0;
 };
 
-// The maps stored with a case; null without maps or room for them.
+// The maps stored with a case; null if there are none or no room for them.
 Json maps_of(const std::filesystem::path& case_file, const AnyPair& pair, const std::vector<std::string>& lanes,
              std::size_t& room, Lacking& lacking) {
   const std::filesystem::path file = std::filesystem::path(case_file).replace_extension(".maps.json");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests that the cards of a small campaign are consistent, and true of their kinds, pairs and lanes.
+// Tests that the cards of a small campaign are consistent and describe their kinds, pairs and lanes correctly.
 #include "reports/failure_cards.h"
 
 #include <fmt/format.h>
@@ -72,7 +72,7 @@ TEST_F(FailureCards, AreTheCommonestKinds) {
   }
 }
 
-// Compares each card's title, verdicts, sentence and drawing.
+// Checks that each card's title, verdicts, sentence and drawing agree.
 TEST_F(FailureCards, DoNotContradictThemselves) {
   const fuzz::SelectedLanes under_test = lanes();
   std::size_t with_line = 0;
@@ -183,7 +183,7 @@ TEST_F(FailureCards, HaveTheirProgramsAndTheStoredMaps) {
       EXPECT_TRUE(contains(error.what(), "graze minimize")) << error.what();
     }
   }
-  // Even a sealed file must have possible contents: a lane that did not run is refused.
+  // Even a sealed file must have possible contents: a lane that did not run is rejected.
   Json other = Json::parse(maps);
   other.erase("checksum");
   other["panels"].push_back({{"name", "never_ran/f32/cpu"}, {"shows", "right everywhere"}, {"png", ""}});

@@ -184,7 +184,7 @@ std::string rate_words(double rate, Bound bound) {
     const bool up = (bound == Bound::upper) == in_percent;
     const auto outward = [&](double value) { return up ? rounded_up(value, 3) : rounded_down(value, 3); };
     text = outward(shown);
-    // The product and the quotient above round as well, so the text is read back and checked.
+    // The product and the quotient above round as well, so the text is parsed and checked.
     const double read = in_percent ? std::stod(text) / 100 : 1 / std::stod(text);
     if (bound == Bound::upper ? read < rate : read > rate)
       text = outward(std::nextafter(std::stod(text), up ? HUGE_VAL : 0.0));
@@ -216,7 +216,7 @@ std::vector<std::string> answer(const CampaignCounts& counts, const Costs* costs
   add(lane_to_use(counts, costs));
   const bool compares =
       std::any_of(lanes.begin(), lanes.end(), [&](std::size_t l) { return !same_family(counts, l, lanes.front()); });
-  if (ours || compares) {  // if only one own code ran, the first sentences say this
+  if (ours || compares) {  // if only one own code ran, the first sentences cover this
     add(lane_to_avoid(counts, costs));
     add(least_wrong_lane(counts, costs));
   }

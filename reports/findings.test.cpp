@@ -75,7 +75,7 @@ TEST(Answer, TellsWhatContractionChanges) {
   EXPECT_TRUE(contains(said[3], "its wrong verdicts go from 0 to 10; 1 of 1 lanes")) << said[3];
   EXPECT_TRUE(contains(said[4], "in interval_overlap/f32/cuda-fma: on 10 (1 %")) << said[4];
   EXPECT_TRUE(contains(said[4], "of 1,000 pairs; without contraction on none.")) << said[4];
-  // The figures on the rate of 2012 are those in docs/measurements.md.
+  // The figures on the rate of 2012 must be those in docs/measurements.md.
   const std::string measured = fuzz::read_whole(fs::path(GRAZE_SOURCE_DIR) / "docs/measurements.md");
   for (const char* rate : {"3,270", "1,300"}) {
     EXPECT_TRUE(contains(said[4], std::string("1 in ") + rate)) << said[4];

@@ -31,7 +31,7 @@ std::string cpp_string(std::string_view text) {
   return result + '"';
 }
 
-// Calls the code through the graze_subject to which `subject` points. It has a function for one pair or for blocks.
+// Calls the code through the graze_subject that `subject` points to, which has a function for one pair or for blocks.
 std::string by_description(std::string_view real, std::string_view scalar, std::string_view subject) {
   return fmt::format(R"(static int decide(const {0}* a, const {0}* b) {{
   const struct graze_subject* subject = {2};
@@ -74,7 +74,7 @@ std::string calling(std::string_view real, std::string_view function) {
                      function);
 }
 
-// Whether the C function returns bool. If so, its caller must declare this.
+// Whether the C function returns bool, in which case its caller must declare this.
 bool returns_bool(const std::filesystem::path& source, const std::string& function) {
   std::string why;
   const std::string text = plain_file(source, why).value_or("");
@@ -97,8 +97,8 @@ std::string hex_line(const AnyPair& pair) {
   return line;
 }
 
-// Calls the lane through the graze command. A CUDA lane needs this because without a device only Graze can replay the
-// lane. A lane of a toolchain needs this because Graze compiles the source with the toolchain.
+// Calls the lane through the graze command. CUDA lanes need this because, without a device, only Graze can replay them.
+// A toolchain's lanes need it because Graze compiles the source with the toolchain.
 std::string by_graze(const Lane& lane, const AnyPair& pair, const subjects::Opened& opened, std::string_view real) {
   std::string command = fmt::format("echo '{}' | graze check - --json --lanes {}", fuzz::pair_text(pair), lane.id);
   if (opened.kind != "published")

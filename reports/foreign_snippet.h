@@ -21,8 +21,7 @@ struct ForeignCall {
 ForeignCall kernel_call(const Lane& lane);
 
 // Returns the parts for a program on the host. The program calls a CUDA lane through the graze command, which runs the
-// lane on a device or replays it on its twin.
-// Requires: a foreign lane.
+// lane on a device or replays it on its twin.   Requires: a foreign lane.
 ForeignCall foreign_call(const Lane& lane, const AnyPair& pair, std::string_view compiler, std::string_view libraries);
 
 }  // namespace graze::reports

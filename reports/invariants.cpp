@@ -38,7 +38,7 @@ Json case_json(const analysis::InvariantSpec& spec, const std::optional<Invarian
           {"says_of_image", name(found->of_image)}};
 }
 
-// The two entries of a case. The pair with the wrong verdict comes first.
+// The two entries of a case, the wrongly decided pair first.
 std::vector<corpus::Entry> entries_of(const analysis::InvariantSpec& spec, const Lane& lane,
                                       const InvariantInfo& invariant, const InvariantCase& found) {
   const auto entry = [&](const AnyPair& pair, Verdict says, const std::string& from) {
@@ -56,7 +56,7 @@ std::vector<corpus::Entry> entries_of(const analysis::InvariantSpec& spec, const
   return entries;
 }
 
-// Shows what each power of two adds to the column "scale, in range". Empty if this is unknown or no verdict changes.
+// Tabulates what each power of two adds to the column "scale, in range". Empty if unknown or if no verdict changes.
 std::string scales_table(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants,
                          const Screen& screen) {
   std::vector<Column> columns{{"lane", Align::left}};

@@ -16,7 +16,7 @@ namespace graze::reports {
 std::string invariants_table(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants,
                              const Screen& screen);
 
-// Says which invariants the lanes claim, and on how many pairs the exact decision and the oracle keep all of them.
+// Describes which invariants the lanes claim, and on how many pairs the exact decision and the oracle keep all of them.
 std::vector<std::string> invariants_sentences(const analysis::InvariantSpec& spec,
                                               const analysis::Invariants& invariants);
 
@@ -24,7 +24,7 @@ std::vector<std::string> invariants_sentences(const analysis::InvariantSpec& spe
 // "case"}}}]}
 nlohmann::ordered_json invariants_json(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants);
 
-// Returns a file's text by the file's name, for each invariant that some lane breaks. For each lane that breaks the
+// Returns a file for each invariant that some lane breaks, as its text by its name. For each lane that breaks the
 // invariant, the file has the simplest such pair and its image, the wrongly decided pair first.
 std::map<std::string, std::string> invariants_cases(const analysis::InvariantSpec& spec,
                                                     const analysis::Invariants& invariants);

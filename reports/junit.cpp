@@ -41,14 +41,14 @@ std::string case_in_xml(const JunitCase& test) {
                              in_xml(test.failure.substr(0, test.failure.find('\n'))), in_xml(test.failure));
 }
 
-// The simplest kept pair on which a lane is wrong, and the file that holds it.
+// The simplest kept pair on which a lane is wrong, and its file.
 struct Kept {
   Simplicity simplicity;  // equal for all pairs of doubles, so the first one is kept
   std::string pair;
   fs::path file;
 };
 
-// The kept pairs by lane and stratum. An empty stratum stands for all strata.
+// The kept pairs by lane and stratum. An empty stratum means all strata.
 std::map<std::pair<std::string, std::string>, Kept> simplest_of(const fs::path& directory, const Json& summary) {
   std::map<std::pair<std::string, std::string>, Kept> simplest;
   for (const Json& row : summary["signatures"]) {
@@ -74,7 +74,7 @@ std::map<std::pair<std::string, std::string>, Kept> simplest_of(const fs::path& 
 }  // namespace
 
 std::string junit(std::span<const JunitCase> cases) {
-  std::string text = "<testsuites name=\"graze\">\n";  // no other program's file begins like this (fuzz/own_files.h)
+  std::string text = "<testsuites name=\"graze\">\n";  // identifies our own files (fuzz/own_files.h)
   for (auto first = cases.begin(); first != cases.end();) {
     const auto last =
         std::find_if(first, cases.end(), [&](const JunitCase& test) { return test.suite != first->suite; });

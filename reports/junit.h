@@ -13,7 +13,7 @@
 namespace graze::reports {
 
 struct JunitCase {
-  std::string suite, name;  // a lane and a stratum, or a file of cases and a case
+  std::string suite, name;  // a lane and a stratum, or a case file and a case
   std::string failure;      // its first line is the message; empty for a test that passes
   std::string skipped;      // why the test did not run; empty if it did
 };
@@ -23,8 +23,7 @@ std::string junit(std::span<const JunitCase> cases);
 
 // Returns a test for each lane and each stratum that has pairs, and a skipped test for each requested lane that did not
 // run. A test fails if the lane is wrong on a pair. Its message then has the simplest pair that the campaign kept for
-// that stratum. If the campaign kept none there, it is the simplest pair of all strata.
-// Throws: like fuzz::read_cases.
+// that stratum, or for any stratum if it kept none there.   Throws: as fuzz::read_cases does.
 std::vector<JunitCase> junit_of_campaign(const std::filesystem::path& directory, const nlohmann::ordered_json& summary,
                                          std::span<const fuzz::LaneLeftOut> left_out);
 

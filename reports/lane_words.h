@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words for lanes and their rates, shared by the sentences of a report's answer.
+// Wording for lanes and their rates, shared by the sentences of a report's answer.
 #pragma once
 
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ inline LaneIndices published(const CampaignCounts& counts) {
   return places;
 }
 
-// Whether the subject is a published algorithm and not a user's own code.
+// Whether the subject is a published algorithm rather than a user's own code.
 inline bool is_published(const std::string& subject) {
   return std::any_of(graze::published_lanes().begin(), graze::published_lanes().end(),
                      [&](const Lane& lane) { return lane.info->id == subject; });

@@ -56,7 +56,7 @@ Json row_json(const fuzz::LeagueRow& row) {
           {"flips", row.flips ? Json(*row.flips) : Json()}};
 }
 
-// Null for a subject that states no facts about itself.
+// Returns null for a subject that states no facts about itself.
 const LeagueSubject* find_subject(const std::vector<LeagueSubject>& subjects, std::string_view name) {
   const auto found = std::find_if(subjects.begin(), subjects.end(), [&](const auto& s) { return s.name == name; });
   return found == subjects.end() ? nullptr : &*found;
@@ -78,7 +78,7 @@ Json subject_json(const AlgorithmInfo& info, const Lane& lane, const std::vector
   return row;
 }
 
-// Writes a number so that it reads back as the same bits: as a decimal if a short one is exact, else as a hex float.
+// Writes a number so that it is read back exactly: as a decimal if a short one is exact, otherwise as a hex float.
 std::string written(double value) {
   const double scaled = std::fabs(value) * 64;
   if (scaled < 1e7 && scaled == std::floor(scaled)) return fmt::format("{}", value);
@@ -188,7 +188,7 @@ std::string table_line(const std::vector<std::string>& cells) {
   return fmt::format("| {} |\n", fmt::join(cells, " | "));
 }
 
-// The head of a table with a column of text and columns of numbers.
+// The header of a table with one text column, followed by columns of numbers.
 std::string table_head(const std::vector<std::string>& titles) {
   std::vector<std::string> rule(titles.size(), "---:");
   rule[0] = "---";

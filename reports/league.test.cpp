@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// docs/league.md takes hours to make, so no test makes it. The page must have the form that the generator produces now.
+// docs/league.md takes hours to generate, so no test generates it. It must have the form of the generator's output.
 #include "reports/league.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ std::string first_match(const std::string& text, const char* pattern) {
   return std::regex_search(text, found, std::regex(pattern)) ? found[1].str() : "";
 }
 
-// The lines that are not empty, with # for each number.
+// The nonempty lines, with # for each number.
 std::vector<std::string> form_of(const std::string& page) {
   std::vector<std::string> lines;
   std::istringstream in(std::regex_replace(page, std::regex("[0-9][0-9,]*"), "#"));
@@ -47,7 +47,7 @@ std::string empty_page(const std::string& command, const std::string& machine, c
   return league_page(league, command);
 }
 
-// The first line of the generator's form that is missing at its place in the page, or "".
+// The first line of the generator's form that is missing at its position in the page, or "".
 std::string first_line_missing(const std::string& page) {
   const std::string measured = first_match(page, "own process; ([^\n]*), [0-9]{4}-[0-9]{2}-[0-9]{2}\\.\n");
   const std::vector<std::string> form = form_of(empty_page(first_match(page, "Made by `([^`]*)`"), measured,

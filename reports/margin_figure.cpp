@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kWidth = 900, kHeight = 420, kLeft = 64, kRight = 20, kTop = 64, kBottom = 66;
-constexpr int kSpan = 26;                   // buckets from 2^(-kSpan/2) to 2^kSpan ulps are drawn on both sides of 0
+constexpr int kSpan = 26;                   // on each side of 0, draws buckets from 2^(-kSpan/2) to 2^kSpan ulps
 constexpr std::uint64_t kFewestPairs = 30;  // shares of fewer pairs are not drawn
 constexpr std::size_t kColours = 6;         // how many of kSvgColours are used
 

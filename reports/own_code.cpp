@@ -37,7 +37,7 @@ std::string not_counted(const analysis::LaneCounts& found) {
   return text;
 }
 
-// Whether the sentence about the kind's simplest pair says that the cause is not settled.
+// Whether the sentence on the kind's simplest pair calls the cause not settled.
 bool is_open(const Json& kind) {
   return kind.at("simplest").at("sentences").at(0).get_ref<const std::string&>().find("not settled") !=
          std::string::npos;
@@ -52,7 +52,7 @@ bool has_no_verdict(const std::string& cause) {
   return cause == "crash" || cause == "no answer in time" || cause == "unstable";
 }
 
-// The rank of a kind; the most important kinds have rank 0.   all: pairs of all kinds of the subject.
+// The rank of a kind; 0 is the most important.   all: the number of pairs of all kinds of the subject.
 int rank_of(const Json& kind, const std::string& lane, std::uint64_t all) {
   if (!is_of_lane(kind, lane)) return 4;
   const std::string cause = kind.at("cause"), shape = kind.at("shape");
@@ -63,7 +63,7 @@ int rank_of(const Json& kind, const std::string& lane, std::uint64_t all) {
   return is_mistake && is_common && !is_open(kind) ? 1 : 2;
 }
 
-// Says from which margin upwards the lane is right on these pairs.
+// Describes from which margin upwards the lane is right on these pairs.
 std::string trusted_from(const StratumCounts& pairs, std::size_t lane, const std::string& which) {
   std::vector<std::string> right, wrong;
   for (const auto& [side, how] : {std::pair(1, "apart"), {-1, "deep"}}) {
@@ -168,7 +168,7 @@ std::vector<Json> first_kinds(const Json& kinds, const ReportLane& lane, std::si
 std::string kind_sentence(const Json& kind, const std::string& lane) {
   constexpr std::string_view kSays = ") says ";
   std::string text = kind.at("simplest").at("sentences").at(0);
-  constexpr std::string_view kUnit = " of the largest coordinate";  // the glossary defines ulps like this
+  constexpr std::string_view kUnit = " of the largest coordinate";  // left out, because the glossary defines ulps so
   if (const std::size_t unit = text.find(kUnit); unit != text.npos) text.erase(unit, kUnit.size());
   const std::size_t at = text.find(kSays);
   return at == text.npos || !is_of_lane(kind.at("simplest"), lane) ? text : "It " + text.substr(at + 2);
@@ -255,7 +255,7 @@ std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const 
                                    : "decides");
   }
   if (!in_source.empty()) text += fmt::format(" ({} your {})", pairs > 0 ? "perhaps" : "such as", in_source);
-  // At other sizes the code fails at other distances, so no margin is named.
+  // At other sizes, the code fails at other distances, so no margin is named.
   if (settled > 0) return text + "; make it relative to the triangles' size.";
   std::string trusted;
   for (const auto& [id, which] :

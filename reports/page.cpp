@@ -41,7 +41,7 @@ bool has_interactive_page() { return !kPageTemplate.empty(); }
 
 std::string page(const Json& report, const Json& costs, const Json& choices) {
   if (!has_interactive_page()) return plain_page(report, costs, choices);
-  // The viewer's parts for the coordinate types of the cards.
+  // The viewer's parts for the coordinate types that the cards use.
   Json parts = has_viewer() ? Json::object() : Json();
   for (const Scalar type : {Scalar::f32, Scalar::f64}) {
     const auto is_of_type = [&](const Json& card) { return card.at("coordinates") == name(type); };

@@ -47,7 +47,7 @@ TEST(Page, HoldsTheReportInItsElement) {
   EXPECT_THROW(filled("<p>", report, nullptr, kNone), std::logic_error);
 }
 
-// `graze report --from` accepts any file, so a report must be refused if any of its parts is missing.
+// `graze report --from` accepts any file, so a report with a missing part must be rejected.
 TEST_F(PageTest, APlainPageOfARestOfAReportIsRefused) {
   const Json report = make_report(root_ / "one");
   std::vector<std::string> places;
@@ -72,7 +72,7 @@ TEST_F(PageTest, APlainPageOfARestOfAReportIsRefused) {
   EXPECT_GT(refused, 100u);
 }
 
-// Checks that opened elements are closed in order. This is sufficient for the output of plain_page.
+// Checks that opened elements are closed in order. For the output of plain_page, this is sufficient.
 void expect_well_formed(const std::string& text) {
   const std::set<std::string> empty{"meta", "!DOCTYPE"};
   std::vector<std::string> open;
@@ -110,8 +110,8 @@ TEST_F(PageTest, PlainPageIsWellFormedAndShowsEverything) {
 
 TEST(Page, OfManySignaturesIsUnderTenMebibytes) {
   if (!has_interactive_page()) GTEST_SKIP() << "this build has no interactive page: it takes Node and npm's packages";
-  // Every bucket has kPairs pairs. In the buckets of intersecting pairs each lane of one subject is wrong on kWrong of
-  // them.
+  // Every bucket has kPairs pairs. In the buckets of intersecting pairs, each lane of one subject is wrong on kWrong of
+  // its pairs.
   constexpr std::uint64_t kPairs = 19'999'999'999, kWrong = 2'345'676'000, kExponents = 70;
   constexpr std::uint64_t kSignatures = 12'000, kOfSignature = 19 * (kBucketMost + 1) * (kWrong / kSignatures);
   static_assert(kWrong % kSignatures == 0);
@@ -119,7 +119,7 @@ TEST(Page, OfManySignaturesIsUnderTenMebibytes) {
   std::vector<std::string> ids, wrong_ids;
   std::string wrong;  // the wrong lanes, as in a signature
   for (const Lane& lane : lanes()) {
-    if (fuzz::is_exact_on_doubles(lane)) continue;  // a campaign of float32 does not run it
+    if (fuzz::is_exact_on_doubles(lane)) continue;  // not run in a campaign of float32
     ids.push_back(lane.id);
     if (lane.info->id != std::string_view("guigue_devillers_2003")) continue;
     wrong_ids.push_back(lane.id);

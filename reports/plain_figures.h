@@ -9,7 +9,7 @@
 
 namespace graze::reports {
 
-// Escapes the characters that have a meaning in HTML.
+// Escapes the characters that have a special meaning in HTML.
 std::string html(const std::string& text);
 
 // The start of a page without scripts, with the style that such pages share. The page must end with

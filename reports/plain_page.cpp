@@ -29,7 +29,7 @@ figure { display: inline-block; vertical-align: top; width: 20rem; margin: 0.5re
 
 std::string paragraph(const std::string& text) { return "<p>" + html(text) + "</p>\n"; }
 
-// The id of the lane of a row.
+// The id of the lane that the row is about.
 std::string lane_of(const Json& report, const Json& row) {
   return report.at("lanes").at(row.at("lane").get<std::size_t>()).at("id");
 }
@@ -154,7 +154,7 @@ std::string differs_section(const Json& report) {
          (equal.empty() ? "" : "<p>Same verdict as the cpu lane on every pair: " + equal + ".</p>\n");
 }
 
-// Tables of how the verdicts of each algorithm change with the toolchain.
+// Tables that show how the verdicts of each algorithm change with the toolchain.
 std::string toolchains_section(const Json& map) {
   if (map.is_null()) return "";
   const std::string reference = html(map.at("reference"));
@@ -194,7 +194,7 @@ std::string times_cell(const Json& cell) {
       times.at(2).is_null() ? "?" : times.at(2).dump(), fmt::format("{}{:.3g}", at_least ? "≥ " : "", shown));
 }
 
-// Says up to which extremes lanes are as right as on ordinary pairs, from pareto.json.
+// Describes, from pareto.json, up to which extremes lanes are as right as on ordinary pairs.
 std::string shapes_section(const Json& pareto) {
   if (pareto.is_null())
     return "<p>To see how far lanes stay right on flat triangles and needles, run <code>graze pareto --out DIR</code> "
@@ -294,7 +294,7 @@ std::string compare_section(const Json& compare) {
   return text;
 }
 
-// The sentences of graze tune, graze pareto and graze discrepancy. Their pictures are in files beside the report.
+// The sentences of graze tune, graze pareto and graze discrepancy. Their pictures are files beside the report.
 std::string choices_section(const Json& choices) {
   std::string text;
   for (const auto& [name, title] : {std::pair{"tuned", "Which tolerance"}, {"pareto", "Errors against cost"}}) {

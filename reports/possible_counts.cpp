@@ -33,12 +33,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Throws: std::runtime_error, which names the expectation and shows the part of the file.
+// Throws: std::runtime_error that names the expectation and shows the part of the file.
 void expect(bool possible, const std::string& what, const Json& part) {
   if (!possible) throw std::runtime_error(fmt::format("expected {}, found {}", what, shown(part.dump())));
 }
 
-// Checks that every share in `part` follows from its counts.
+// Checks that every share in `part` agrees with its counts.
 void expect_shares(const Json& part) {
   if (part.is_object() && part.contains("count") && part.contains("of") && part.contains("share")) {
     const std::uint64_t count = part["count"], of = part["of"];
@@ -48,7 +48,7 @@ void expect_shares(const Json& part) {
   }
 }
 
-// Checks that the bound of a rate is not below the observed rate.
+// Checks that the upper bound of a rate is not below the observed rate.
 void expect_bound(const Json& bound, std::uint64_t count, std::uint64_t of, const Json& part) {
   const double least = of == 0 ? 1 : std::max(static_cast<double>(count) / static_cast<double>(of), bound_of_none(of));
   expect(bound >= (1 - 1e-9) * least && bound <= 1, fmt::format("a bound for {} of {} pairs", count, of), part);
@@ -83,7 +83,7 @@ Drawn drawn_of(const Json& report, const Json& stratum, const Json& group = {}) 
 }
 
 void expect_possible_rates(const Json& report) {
-  // For each lane, the counts over all strata together, and the sum of its counts over the strata.
+  // For each lane: its counts over all strata together, and the sum of its counts over the strata.
   std::map<std::string, std::pair<Counts, Counts>> of_lanes;
   for (const Json& row : report.at("rates")) {
     const Drawn of = drawn_of(report, row.at("stratum"));
@@ -128,7 +128,7 @@ void expect_possible_rates(const Json& report) {
   }
 }
 
-// Checks that the lane's differences from cpu by margin add up to those of its rates.
+// Checks that the lane's differences from cpu, summed over margins, equal those in its rates.
 void expect_differences(const Json& report, const Json& row) {
   for (const Json& rate : report.at("rates")) {
     if (rate.at("lane") != row.at("lane") || rate.at("stratum") != row.at("stratum")) continue;
@@ -144,7 +144,7 @@ void expect_differences(const Json& report, const Json& row) {
   }
 }
 
-// Checks that an extreme's origin, ratios and words follow from its cells.
+// Checks that an extreme's origin, ratios and words agree with its cells.
 void expect_extremes(const Json& row) {
   Json again = row;
   add_right_range(again);
@@ -166,7 +166,7 @@ StratumCounts counts_at(const Json& points) {
   return counts;
 }
 
-// Checks that the thresholds over all strata follow from the margins.
+// Checks that the thresholds over all strata agree with the margins.
 void expect_thresholds(const Json& report, const Json& margins) {
   const StratumCounts counts = counts_at(margins.at("points"));
   const bool one_stratum = report.at("strata").size() == 1;
@@ -295,7 +295,7 @@ analysis::PolicyErrors errors_of(const Json& row) {
   return errors;
 }
 
-// Checks that the fixed and broken pairs account for the difference from the lane without a policy on the same pairs.
+// Checks that the fixed and broken pairs account for the difference from the lane without a policy on these pairs.
 void expect_relocation(const Json& row, const Json& without) {
   const analysis::PolicyErrors errors = errors_of(row), zero = errors_of(without);
   expect(errors.pairs == zero.pairs && errors.fixed <= zero.not_right() && errors.broken <= errors.not_right() &&
@@ -341,7 +341,7 @@ Enumeration among(const std::string_view (&names)[kCount], const Json& name) {
   return static_cast<Enumeration>(found - std::begin(names));
 }
 
-// Checks that the choice, its result and the dead sites follow from the counts.
+// Checks that the choice, its result and the dead sites agree with the counts.
 void expect_choice(const Json& tuned) {
   const auto forbid = among<analysis::Forbid>(kTuneForbids, tuned.at("forbid"));
   const double max_rate = tuned.at("max_rate");
@@ -381,18 +381,18 @@ void expect_choice(const Json& tuned) {
   expect(result == expected, fmt::format("'{}'", kTuneResults[static_cast<int>(expected)]), tuned["result"]);
 }
 
-// Checks that either all rows have costs on the host or all have costs on a device, which have other fields.
+// Checks that all rows have costs on the host, or all have costs on a device, which have other fields.
 void expect_costs_of_kind(const Json& row, bool on_device) {
   for (const char* field : {"resident", "with_copies", "registers", "local_bytes", "active_threads"})
     expect(row.contains(field) == on_device, fmt::format("{} for all lanes or for none", field), row);
   for (const char* field : {"in_cache", "from_memory"})
     expect(row.contains(field) != on_device, fmt::format("{} for all lanes or for none", field), row);
-  // A user's code may take only blocks of pairs, so it may lack the cost of a call of one pair.
+  // A user's code may take only blocks of pairs, and then has no cost of a call of one pair.
   const Lane* lane = find_lane(row.at("lane").get<std::string>());
   expect(on_device || !lane || lane->foreign || row.contains("one_a_call"), "the cost of a call of one pair", row);
 }
 
-// Checks which lanes are dominated. Rounding keeps the order of costs but may make them equal.
+// Checks which lanes are dominated. Rounding keeps the order of costs, but may make different costs equal.
 void expect_domination(const Json& row, const Json& lanes) {
   const auto cost = [](const Json& lane, const char* quartile) -> double {
     return lane.at(lane.contains("resident") ? "resident" : "in_cache").at(quartile);
@@ -411,7 +411,7 @@ void expect_domination(const Json& row, const Json& lanes) {
          dominated ? "a lane that none dominates" : "a lane that another dominates", row.at("dominated"));
 }
 
-// Checks the map of toolchains against the lanes and their rates.
+// Checks the toolchain map against the lanes and their rates.
 void expect_possible_map(const Json& map, const Json& report) {
   const std::vector<std::string> variants = map.at("variants");
   const auto is_variant = [&](const Json& name) {
@@ -464,7 +464,7 @@ void expect_possible_costs(const Json& costs, const Json& report) {
   expect_shape(costs, "costs");
   expect_possible_errors(costs);
   expect_lanes(costs, report.at("lanes").size());
-  // The costs of an unfinished campaign may include pairs that are not judged yet.
+  // An unfinished campaign may have timed pairs that are not judged yet.
   const std::uint64_t all = report.at("run").at("pairs");
   const bool complete = report["run"].at("complete");
   const auto most_of = [&](const Json& stratum) {

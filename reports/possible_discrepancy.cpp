@@ -23,7 +23,7 @@ void expect(bool holds, const std::string& what) {
   if (!holds) throw std::runtime_error("impossible counts: " + what);
 }
 
-// Checks that the count of each key is at most that of the key before it.
+// Checks that no key's count exceeds the count of the key before it.
 void expect_falling(const Json& of, std::initializer_list<const char*> keys, const std::string& what) {
   const char* before = nullptr;
   for (const char* key : keys) {
@@ -38,7 +38,7 @@ std::uint64_t sum_of(const Json& histogram) {
   return sum;
 }
 
-// Checks that the counts by place on the stratum's axis add up to those over all pairs.
+// Checks that the counts by position on the stratum's axis add up to those over all pairs.
 void expect_extremes(const Json& of, const std::string& what) {
   for (const auto& [axis, places] : of.at("extremes").items()) {
     expect(axis == "scale" || axis == "offset", what + ": extremes of " + axis);
@@ -91,7 +91,7 @@ void expect_possible_counts(const Json& of, const std::vector<Question>& questio
   }
 }
 
-// Adds the numbers of `some` to those at the same places of `to`. Fields named "largest…" keep the larger value.
+// Adds the numbers of `some` to those with the same keys in `to`. Fields named "largest…" keep the larger value.
 void add(Json& to, const Json& some, const std::string& key = "") {
   if (some.is_number_float() || key.starts_with("largest")) {
     to = std::max(to.is_null() ? 0.0 : to.get<double>(), some.get<double>());
@@ -107,7 +107,7 @@ void add(Json& to, const Json& some, const std::string& key = "") {
   }
 }
 
-// The traced pairs are a part of the compared pairs, so no count may exceed that of the comparison.
+// The traced pairs are among the compared pairs, so no count may exceed the comparison's count.
 void expect_possible_origins(const Json& of, const std::vector<Question>& questions, const std::string& what) {
   const Json &origins = of.at("origins"), &total = of.at("total"), &lines = origins.at("lines");
   expect(number_at(origins, "pairs") <= number_at(total, "pairs"), what + ": more pairs are traced than compared");

@@ -27,8 +27,8 @@ Share share_not_right(const CampaignCounts& counts, std::size_t lane) {
   return share_of(not_right(counts, lane), counts.total.pairs);
 }
 
-// The strata on which costs are compared. These are the general pairs if there are any, because exact decisions are
-// known to be slow on other pairs. If there are general pairs of both coordinate types, only those of float32 count.
+// The strata on which costs are compared: the general pairs if there are any, because exact decisions are known to be
+// slow on other pairs. If both coordinate types have general pairs, only those of float32 count.
 struct Ground {
   std::vector<std::size_t> strata;
   std::string pair;  // "a general pair"
@@ -72,7 +72,7 @@ std::string over_all_strata(const CampaignCounts& counts, const Costs* costs, co
   return fmt::format("; over all strata {} against {}", cost_words(*own), cost_words(*others));
 }
 
-// The end of a sentence, which names the cost of the exact lane.
+// The end of a sentence: what the exact lane costs.
 std::string price(const CampaignCounts& counts, const Costs* costs, const LaneIndices& exact) {
   if (!costs) return ". Its cost depends on the machine; costs.json has it if the campaign was timed.";
   const Ground ground = ground_of(counts);
@@ -100,7 +100,7 @@ std::string price(const CampaignCounts& counts, const Costs* costs, const LaneIn
                      rate_words(wrong_share(counts, *other).share));
 }
 
-// The best lane of the other families according to `better`. Nothing if there is none.
+// The best lane, according to `better`, outside the family of `than`. Nothing if there is none.
 template <class Better>
 std::optional<std::size_t> first_of_others(const CampaignCounts& counts, const LaneIndices& lanes, std::size_t than,
                                            Better better) {
@@ -121,7 +121,7 @@ std::string not_settled(const CampaignCounts& counts, const char* which, std::si
       which, counts.lanes[l].id, what, interval(l), counts.lanes[r].id, interval(r));
 }
 
-// ", at 82 ns a general pair": the cost of the cheapest of the lanes.
+// ", at 82 ns a general pair": the cost of the cheapest lane.
 std::string at_cost(const CampaignCounts& counts, const Costs* costs, const LaneIndices& lanes) {
   const Ground ground = ground_of(counts);
   const std::optional<std::size_t> lane = cheapest(costs, lanes, ground.strata);
@@ -130,7 +130,7 @@ std::string at_cost(const CampaignCounts& counts, const Costs* costs, const Lane
                      cost_words(*costs->of(*lane, ground.strata)), ground.pair);
 }
 
-// "; bound declines 1,200 pairs", for each lane that declines some pairs.
+// "; bound declines 1,200 pairs", for each lane that declines pairs.
 std::string declining(const CampaignCounts& counts, const LaneIndices& lanes) {
   std::string text;
   for (const std::size_t l : lanes) {
@@ -202,7 +202,7 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
   return {text + "."};
 }
 
-// If some lanes decline pairs, the sentence names the lane that is most often right. This is never a lane that declines
+// If some lanes decline pairs, the sentence names the lane that is right most often, which is never one that declines
 // everything.
 Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs) {
   const LaneIndices lanes = published(counts);

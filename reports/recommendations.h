@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recommends which lane to use and which to avoid. Each sentence follows from counts and costs. If the intervals of a
-// comparison overlap, the sentence says "not settled".
+// Recommends which lane to use and which to avoid, based on counts and costs. If the intervals of a comparison overlap,
+// the sentence calls it "not settled".
 #pragma once
 
 #include "reports/costs.h"

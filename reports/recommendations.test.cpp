@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests recommendations on artificial data for which they could easily be wrong.
+// Tests recommendations on artificial data that would reveal likely mistakes.
 #include "reports/recommendations.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ CampaignCounts counts_with(const std::vector<MadeLane>& lanes,
   return counts_of(summary);
 }
 
-// Costs of each lane on uniform and on degenerate, with a spread of 1 ns. A cost of 0 means that there is no timing.
+// Costs of each lane on uniform and on degenerate, with a spread of 1 ns. A cost of 0 means that it was not timed.
 Costs costs_with(const std::vector<std::pair<double, double>>& of_lanes) {
   Costs costs{"a machine", 9, {}};
   for (const auto& [uniform, degenerate] : of_lanes) {
@@ -207,13 +207,13 @@ TEST(Costs, AreThoseOfTheLastTimedRunAndCountPairs) {
   EXPECT_EQ(costs->of(0, {0, 1})->middle, 70);  // (100 · 40 + 300 · 80) / 400
   EXPECT_EQ(costs->of(0, {0})->high, 41);
   EXPECT_FALSE(costs->of(1, {0}));
-  // Costs that were measured on more pairs than the stratum has are refused.
+  // Costs are rejected if more pairs were timed than the stratum has.
   CampaignCounts fewer = counts;
   fewer.strata[0].pairs = 100;
   EXPECT_TRUE(costs_of(runs, fewer));
   fewer.strata[0].pairs = 99;
   EXPECT_THROW(costs_of(runs, fewer), std::runtime_error);
-  fewer.complete = false;  // costs of an unfinished campaign may include pairs that it has not judged
+  fewer.complete = false;  // an unfinished campaign may have timed pairs that are not judged yet
   EXPECT_TRUE(costs_of(runs, fewer));
   EXPECT_FALSE(costs_of(Json::array({{{"machine", "untimed"}}}), counts));
   EXPECT_FALSE(costs_of(Json::array(), counts));

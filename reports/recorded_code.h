@@ -15,7 +15,7 @@ nlohmann::ordered_json code_json(const nlohmann::ordered_json& recorded);
 // "P/m.cpp (hash 0a…, by g++ … -O3, CXX=g++)" for a row of code_json.
 std::string code_words(const nlohmann::ordered_json& of);
 
-// Returns a sentence for each subject whose code differs between two results. A result may have "subjects" (code_json).
+// Returns a sentence for each subject whose code differs between two results. "subjects" (code_json) may be missing.
 std::vector<std::string> code_differences(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after);
 
 }  // namespace graze::reports

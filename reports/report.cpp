@@ -33,8 +33,8 @@ namespace graze::reports {
 using fuzz::Json;
 namespace {
 
-// The machines that the campaign ran on, if their names are known. Only runs that recorded pairs count. If no run did,
-// because it was killed after it decided the pairs, all recorded runs count.
+// The machines that the campaign ran on, if their names are known. Only runs that recorded pairs count. If there are
+// none, because runs were killed after deciding their pairs, all recorded runs count.
 Json machines(const std::filesystem::path& directory) {
   std::set<std::string> names, without_pairs;
   for (const Json& run : fuzz::read_timings(directory)) {
@@ -62,7 +62,7 @@ Json run_of(const std::filesystem::path& directory, const Json& summary, const C
   return run;
 }
 
-// Describes the pairs of a stratum. The text differs between meshes, and between hunts that start from other strata.
+// Describes a stratum's pairs. Different meshes have different descriptions, as do hunts from different strata.
 std::string description_of(const std::string& stratum, const Json& spec) {
   if (const strata::StratumInfo* row = strata::stratum_info(stratum))
     return (strata::stratum_in_doubles(stratum) ? "in doubles: " : "") + std::string(row->what);
@@ -167,7 +167,7 @@ namespace {
 
 constexpr const char* kAgain = "make it again: graze report DIR";
 
-// Checks a file that Graze wrote.   Throws: FormatError, which names it.
+// Checks a file that Graze wrote.   Throws: FormatError with the file's name.
 template <class Check>
 void checked(const std::filesystem::path& file, const char* what, Check check) {
   try {
@@ -193,14 +193,14 @@ Json make_costs(const std::filesystem::path& directory) {
 
 namespace {
 
-// Reads a file and checks what it holds. Returns null if there is no such file.
+// Reads a file and checks its contents. Returns null if there is no such file.
 Json read_checked(const std::filesystem::path& file, void (*expect_possible)(const Json&)) {
   Json found = fuzz::read_sealed(file, "remove it, or make it again");
   if (!found.is_null()) checked(file, "what graze writes into it", [&] { expect_possible(found); });
   return found;
 }
 
-// Says whether `graze discrepancy` wrote counts of other pairs into the campaign's folder; empty if it did not.
+// A sentence if `graze discrepancy` wrote counts of other pairs into the campaign's folder; otherwise empty.
 std::string other_pairs(const std::filesystem::path& directory, const Json& discrepancy) {
   const Json spec = fuzz::recorded_spec(directory);
   if (!spec.is_object()) return "";

@@ -9,15 +9,15 @@
 
 namespace graze::reports {
 
-// Throws: like fuzz::checked_summary, and FormatError for other damaged files.
+// Throws: as fuzz::checked_summary does, and FormatError for other damaged files.
 nlohmann::ordered_json make_report(const std::filesystem::path& directory);
 
-// Returns the costs of the campaign's lanes, and the answer that includes them (costs.h). The report leaves costs out,
-// because they depend on the machine. Null if the campaign has no timings of its lanes.   Throws: as make_report.
+// Returns the costs of the campaign's lanes, and the answer that includes them (costs.h). The report has no costs,
+// because they depend on the machine. Null if the campaign has no lane timings.   Throws: as make_report does.
 nlohmann::ordered_json make_costs(const std::filesystem::path& directory);
 
-// Returns {"tuned", "pareto", "discrepancy"}: the contents of tune.json and pareto.json in the directory, and the
-// sentences of its discrepancy.json. Each is null if its file is missing.
+// Returns {"tuned", "pareto", "discrepancy"}: the contents of tune.json and pareto.json, and the sentences of
+// discrepancy.json. Each is null if its file is missing from the directory.
 // Throws: FormatError for a file of another shape or with impossible counts.
 nlohmann::ordered_json make_choices(const std::filesystem::path& directory);
 
@@ -27,7 +27,7 @@ std::string report_text(const nlohmann::ordered_json& report);
 // Reads a stored report.   Throws: FormatError, also for impossible counts.
 nlohmann::ordered_json read_report(const std::filesystem::path& file);
 
-// Reads the costs.json of that report. Returns null if there is no such file.   Throws: as read_report.
+// Reads the report's costs.json. Returns null if there is no such file.   Throws: as read_report does.
 nlohmann::ordered_json stored_costs(const std::filesystem::path& file, const nlohmann::ordered_json& report);
 
 }  // namespace graze::reports

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests reports of small campaigns that run here, and of damaged campaigns.
+// Tests reports of small campaigns, which run here, and of damaged campaigns.
 #include "reports/report.h"
 
 #include <fmt/format.h>
@@ -67,7 +67,7 @@ TEST_F(ReportTest, AgreesWithTheSummary) {
   EXPECT_EQ(kinds, (std::set<std::string>{"cpu-nofma", "f32-f64", "nofma-fma"}));
 }
 
-// If a file of a campaign is changed in any way, the error names that file.
+// If a campaign file is changed in any way, the error names that file.
 TEST_F(ReportTest, DamageIsBlamedOnItsFile) {
   run("damaged", 2);
   store_kinds("damaged");
@@ -173,7 +173,7 @@ TEST_F(ReportTest, ComparesTwoCampaigns) {
     EXPECT_TRUE(lost["key"].get<std::string>().starts_with("moller_1997/")) << lost;
 }
 
-// Collects one place for each name. Of a list, it visits only the first element.
+// Collects one value's path for each name. In a list, only the first element is visited.
 void collect(const Json& value, const Json::json_pointer& at, std::vector<Json::json_pointer>& places) {
   if (!at.empty()) places.push_back(at);
   if (value.is_object()) {
@@ -183,8 +183,8 @@ void collect(const Json& value, const Json::json_pointer& at, std::vector<Json::
   }
 }
 
-// Puts values of another type, and impossible numbers, at each place in turn.
-// possible: names of numbers that may have any value.
+// Replaces each value in turn by values of another type and by impossible numbers.
+// possible: the names of numbers that may have any value.
 void expect_all_refused(const Json& whole, const std::set<std::string>& possible,
                         const std::function<std::string(const Json&)>& error_of) {
   ASSERT_EQ(error_of(whole), "");
@@ -223,7 +223,7 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
     return "";
   };
   const std::vector<std::string> few = {"moller_1997/f32/cpu", "moller_1997/f32/cuda-fma", "exact/f32/cpu"};
-  run("few", 2, 3, few);  // a small report, because each of its places makes a file to read
+  run("few", 2, 3, few);  // a small report, because each of its values is changed in a separate file
   store_kinds("few", few);
   Json report = make_report(root_ / "few");
   const Json changed = {{"lane", few[0]},
@@ -392,7 +392,7 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
   fs::remove_all(root_ / "forged");
 }
 
-// Computes the thresholds again from the definition in docs/formats.md.
+// Recomputes the thresholds from their definition in docs/formats.md.
 TEST_F(ReportTest, ThresholdsAreWhereTheSummarysErrorsEnd) {
   const Json report = make_report(root_ / "one"), strata = summary("one")["strata"];
   std::string csv;
@@ -467,7 +467,7 @@ TEST_F(ReportTest, TablesHaveARowAHeaderAndTheSameCellsEach) {
   EXPECT_EQ(rows["thresholds.csv"], 2 * report["lanes"].size() * (report["groups"].size() + 3 + 1));
   EXPECT_GT(rows["margins.csv"], 100u);
   EXPECT_GT(rows["differs.csv"], 100u);
-  EXPECT_LT(rows["differs.csv"], rows["margins.csv"]);  // cpu lanes are compared with none
+  EXPECT_LT(rows["differs.csv"], rows["margins.csv"]);  // cpu lanes have nothing to be compared with
   EXPECT_GT(rows["rates.csv"], report["rates"].size());
 }
 

@@ -80,7 +80,7 @@ TEST(Terminal, PairMarksWrongLanes) {
   EXPECT_NE(out.str().find("\n  projected_sat/f32  disjoint  intersects !\n"), std::string::npos) << out.str();
 }
 
-// If a row of decimals and hex floats would be too long, each hex float is printed below its decimal.
+// If a row of decimals and hex floats would be too long, each hex float is printed below its decimal number.
 TEST(Terminal, PairFitsItsScreen) {
   const Pair pair{{{0.1f, -1.23456e-30f, 3}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
   const auto first_lines = [&](int columns) {
@@ -119,7 +119,7 @@ TEST(ParetoTable, EachRowIsWholeOnADevice) {
 TEST(MarginFigure, DrawsALineForEachCpuLane) {
   const std::string svg = margin_figure(example());
   EXPECT_NE(svg.find("<polyline"), std::string::npos);
-  EXPECT_EQ(svg.find("<polyline"), svg.rfind("<polyline"));  // the cpu-fma lane is not drawn
+  EXPECT_EQ(svg.find("<polyline"), svg.rfind("<polyline"));  // only cpu is drawn, not cpu-fma
   EXPECT_NE(svg.find("moller_1997"), std::string::npos);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The properties of the output: its columns, and whether it shows colour. Files and pipes get the defaults, so that a
+// The properties of the output: its columns, and whether it shows colour. Files and pipes get the defaults, so a
 // command writes the same bytes everywhere.
 #pragma once
 
@@ -16,7 +16,7 @@ struct Screen {
 std::string bold(const Screen& screen, std::string_view text);
 std::string red(const Screen& screen, std::string_view text);
 
-// The number of columns that the text takes: its number of code points.   Requires: UTF-8 without colour codes.
+// The text's width in columns, which is its number of code points.   Requires: UTF-8 without colour codes.
 int width_of(std::string_view text);
 
 // Wraps the text at spaces into lines of at most `columns`; a longer word gets its own line. The first line is indented

@@ -10,8 +10,8 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 // The shapes by name, as in reports/web/src/report.ts. An object must have the given fields. A '?' after a field's name
-// makes it optional, and "*" stands for all fields. All elements of a list have one shape; with "some", the list must
-// not be empty. A '?' after a shape allows null. A "positive count" is not 0. Other words name shapes of this table.
+// makes it optional, and "*" means all fields. All elements of a list have one shape; with "some", the list must not be
+// empty. A '?' after a shape allows null. A "positive count" is not 0. Other words are names of shapes in this table.
 constexpr const char* kShapes = R"({
 "share": {"count": "count", "of": "count", "share": "number?", "low": "number?", "high": "number?"},
 "threshold": {"exponent": "whole?", "above": "count", "bound": "number", "largest": "whole?"},

@@ -32,7 +32,7 @@ const std::string_view* find_embedded(std::string_view path) {
   return file == std::end(kEmbedded) ? nullptr : &file->text;
 }
 
-// A header and everything that it includes, each file once, in the order in which a compiler reads them.
+// A header and everything that it includes, each file once, in the order in which a compiler would read them.
 struct Amalgamation {
   std::set<std::string> seen, system;
   std::string text;
@@ -136,7 +136,7 @@ std::string vertices(SnippetKind kind, const Vec3<Real> (&triangle)[3], char lab
   return text;
 }
 
-// Replaces characters that could end the comment in which the name stands, because names come from files.
+// Replaces characters that could end the comment around the name, because names come from files.
 std::string in_comment(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');

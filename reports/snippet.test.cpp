@@ -28,7 +28,7 @@ TEST(Snippet, HoldsTheAlgorithmsOwnSource) {
 }
 
 TEST(Snippet, HoldsNothingItDoesNotNeed) {
-  // An AlgorithmInfo begins with its algorithm's id in quotes. The source contains its own id and no other.
+  // An AlgorithmInfo begins with its algorithm's id in quotes. The source must contain its own id and no other.
   for (const Lane& lane : published_lanes()) {
     const std::string source = amalgamated_source(lane.info->id);
     for (const Lane& other : published_lanes())
@@ -104,7 +104,7 @@ TEST(Snippet, PythonDecidesTheWholeCorpus) {
   EXPECT_EQ(std::system(command.c_str()), 0);
 }
 
-// The program must detect a false truth. This shows that it really decides.
+// The program must reject a false truth, which shows that it really decides.
 TEST(Snippet, PythonContradictsAWrongTruth) {
   if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "graze-wrong-truth.py";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names the cheapest published lane that is right often enough in a scene, and its tolerance.
+// Finds the cheapest published lane, with its tolerance, that is right often enough in a scene.
 #pragma once
 
 #include <optional>
@@ -23,13 +23,13 @@ struct Candidate {
   analysis::Cost cost;
 };
 
-// The cheapest candidate that keeps the rate; null if there is none.
+// The cheapest candidate whose rate is low enough; null if there is none.
 // scalar: if given, only candidates of this scalar count.
 const Candidate* cheapest_sufficient(std::span<const Candidate> candidates,
                                      std::optional<Scalar> scalar = std::nullopt);
 
-// Says which lane to use at this rate of wrong verdicts, what the other precision would change, and what `exact` costs.
-// A lane is not called cheaper if the spreads of the costs overlap.   Requires: at least one candidate.
+// Describes which lane to use at this rate of wrong verdicts, what the other precision would change, and what `exact`
+// costs. A lane is not called cheaper if the spreads of the costs overlap.   Requires: at least one candidate.
 std::vector<std::string> sufficient_sentences(double rate, std::span<const Candidate> candidates,
                                               const std::string& exact, const analysis::Cost& exact_cost);
 

@@ -23,7 +23,6 @@ inline std::string svg_begin(std::string_view title) {
       title);
 }
 
-// A grid line.
 inline std::string svg_level(double left, double right, double y) {
   return fmt::format(
       "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#888\" stroke-opacity=\"0.35\"/>\n", left,
@@ -45,7 +44,7 @@ struct RateAxis {
     return bottom + (top - bottom) * (std::log10(std::max(rate, std::pow(10.0, least))) - least) / -least;
   }
 
-  // A grid line for each power of ten, with its label to the left. none: the label of the least.
+  // A grid line for each power of ten, with its label to the left. none: the label of the lowest line.
   std::string levels(double left, double right, std::string_view none) const {
     std::string svg;
     for (int power = least; power <= 0; ++power) {

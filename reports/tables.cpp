@@ -20,7 +20,7 @@ constexpr int kDigits = 5;
 
 double rounded(double value) { return *parse_float64(fmt::format("{:.{}g}", value, kDigits)); }
 
-// Calls visit(index, stratum) for each stratum that has pairs, and visit(null, total).
+// Calls visit(index, stratum) for each stratum that has pairs, then visit(null, total).
 template <class Visit>
 void for_each_stratum(const CampaignCounts& counts, Visit visit) {
   for (std::size_t s = 0; s < counts.strata.size(); ++s) {
@@ -45,7 +45,7 @@ Json errors_of(const StratumCounts& pairs, std::size_t lane) {
 }  // namespace
 
 Json to_json(const Share& share) {
-  // Without cases there is no share.
+  // Without pairs to count, there is no share.
   if (share.of == 0) return {{"count", 0}, {"of", 0}, {"share", nullptr}, {"low", nullptr}, {"high", nullptr}};
   return share_json(share);
 }
@@ -84,7 +84,7 @@ Json rates(const CampaignCounts& counts) {
 std::optional<std::uint64_t> differs(const CampaignCounts& counts, const StratumCounts& stratum, std::size_t left,
                                      std::size_t right) {
   const auto left_cpu = counts.lanes[left].cpu, right_cpu = counts.lanes[right].cpu;
-  // A lane that never differs from the cpu lane can stand for it in the comparison.
+  // In the comparison, a lane that never differs from the cpu lane can replace it.
   const bool stands_for_cpu = left_cpu && left_cpu == right_cpu && stratum.lanes[left].differs_from_cpu == 0;
   if (right_cpu != left && !stands_for_cpu) return std::nullopt;
   return stratum.lanes[right].differs_from_cpu;

@@ -17,8 +17,8 @@ nlohmann::ordered_json to_json(const Share& share);
 
 nlohmann::ordered_json rates(const CampaignCounts& counts);
 
-// Compares pairs of lanes of one algorithm that differ in one respect: cpu and cuda-nofma, which must be equal;
-// cuda-nofma and cuda-fma; f32 and f64.
+// Compares pairs of lanes of one algorithm that differ in one respect: cpu and cuda-nofma, which must agree; cuda-nofma
+// and cuda-fma; f32 and f64.
 nlohmann::ordered_json side_by_side(const CampaignCounts& counts);
 
 // The number of pairs on which two lanes' verdicts differ. Nothing if the campaign did not count them.
@@ -29,15 +29,15 @@ nlohmann::ordered_json margins(const CampaignCounts& counts);
 
 // The smallest margin, a power of two in ulps, at or above which a lane was never wrong on one side of zero.
 struct Threshold {
-  bool found = false;       // false: wrong at the largest margins seen, or no margins were seen
-  int exponent = 0;         // one more than at the largest margin with an error; without errors, at the smallest seen
-  std::uint64_t above = 0;  // pairs with at least this margin
+  bool found = false;          // false: wrong at the largest margins seen, or no margins were seen
+  int exponent = 0;            // one above the largest margin's with an error; without errors, the smallest margin's
+  std::uint64_t above = 0;     // pairs with at least this margin
   std::optional<int> largest;  // exponent of the largest margins seen; nothing if no pair is on that side
 };
 Threshold threshold(const StratumCounts& counts, std::size_t lane, int side);
 nlohmann::ordered_json to_json(const Threshold& threshold);
 
-// Has thresholds for each group of strata, each stratum, and all strata together, because strata differ too much to
+// Has thresholds for each group of strata, each stratum, and all strata together, because strata are too different to
 // share one threshold.
 nlohmann::ordered_json thresholds(const CampaignCounts& counts);
 
@@ -46,15 +46,14 @@ nlohmann::ordered_json group_rates(const CampaignCounts& counts);
 nlohmann::ordered_json extremes(const CampaignCounts& counts);
 
 // Shows how the verdicts of one source differ between the compilers and processors of a campaign. Has a row for each
-// algorithm and scalar. A row has a cell for each variant without a policy: the share of
-// verdicts that differ from the reference's, and the share that are wrong. Variants that agree on every pair of every
-// row form a group. The reference is x86-gcc, else cpu, else the first variant. ToolchainMap in
-// reports/web/src/report.ts describes the JSON.
+// algorithm and scalar. A row has a cell for each variant without a policy, with the share of verdicts that differ from
+// the reference's and the share that are wrong. Variants that agree on every pair of every row form a group. The
+// reference is x86-gcc, else cpu, else the first variant. For the JSON, see ToolchainMap in reports/web/src/report.ts.
 //
 // Two lanes of a subject differ on a pair exactly if the pair's signature marks them differently, so the signatures'
-// counts suffice. A lane has no count if it declines pairs or its convention covers some, because not all
-// of these pairs have a signature. signatures: as signature_rows returns them (failure_cards.h).   Returns: null if
-// no toolchain ran.
+// counts suffice. A lane that declines pairs, or whose convention covers some, has no count, because not all of these
+// pairs have a signature. signatures: as signature_rows returns them (failure_cards.h).   Returns: null if no toolchain
+// ran.
 nlohmann::ordered_json toolchain_map(const CampaignCounts& counts, const nlohmann::ordered_json& signatures);
 
 // Whether a program built by a toolchain ran as a lane of the campaign.

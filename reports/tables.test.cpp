@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests intervals, and the tables of artificial summaries.
+// Tests intervals, and the tables made from artificial summaries.
 #include "reports/tables.h"
 
 #include <random>
@@ -41,7 +41,7 @@ TEST(Bounds, AreRoundedOutwardWhereverTheyAreWritten) {
   }
 }
 
-// For 23 of 1,610 the upper bound is about 0.0202. It is above the requested 0.02, so it must not be printed as 0.02.
+// For 23 of 1,610, the upper bound is about 0.0202. This exceeds the requested 0.02, so it must not be printed as 0.02.
 TEST(Bounds, ATunedPolicysBoundIsNotRoundedToWhatWasAsked) {
   const TuneQuestion question{"moller_1997/f32/cpu", analysis::Forbid::any, 0.02, 0.1};
   analysis::Tuned tuned;
@@ -56,7 +56,7 @@ TEST(Bounds, ATunedPolicysBoundIsNotRoundedToWhatWasAsked) {
   EXPECT_NE(said.find("are under 0.021, and 0.02 was asked for"), said.npos) << said;
 }
 
-// A comparison with 0 decides values that are exactly 0 differently from a comparison with any small number.
+// A comparison with 0 and one with any small number decide values that are exactly 0 differently.
 TEST(Tuning, ZeroIsNotSoldAsASmallValue) {
   const subjects::TunableSource source{"mine.cpp", "", {}, {"kEps", "1e-6f", 1e-6, {{0, 0, 3}}}};
   const TuneQuestion question{"mine/f32/cpu", analysis::Forbid::any, 0.02, 0.1, &source};
@@ -79,7 +79,7 @@ TEST(Tuning, ZeroIsNotSoldAsASmallValue) {
   EXPECT_FALSE(warns());
 }
 
-// The lower and the upper bound of the rate at which two lanes differ are also rounded outward.
+// The lower and upper bounds of the rate at which two lanes differ are also rounded outward.
 TEST(Bounds, ThoseOfAnAgreementAreRoundedOutward) {
   AgreeQuestion question{{"moller_1997/f32/cpu", "moller_1997/f32/cuda-fma"}, {}, "", "", 0.02};
   analysis::Agreed agreed;
@@ -123,7 +123,7 @@ TEST(Wilson, BoundOfNoneIsTheRuleOfThree) {
   EXPECT_NEAR(bound_of_none(1'000'000'000), 2.9957e-9, 1e-12);
 }
 
-// A count that was not compared is null in the summary and in the report. Without pairs there is no share.
+// If no differences were counted, their number is null in the summary and the report. Without pairs there is no share.
 TEST(Tables, OfNothingThereIsNoShare) {
   Json summary = summary_of({"moller_1997/f32/cuda-fma"}, {"uniform"}, {0, 3, 0, 0});
   summary["strata"]["uniform"]["intersects"] = 1000;  // so that no verdict can be a false positive
@@ -164,7 +164,7 @@ TEST(Tables, ThresholdIsWhereErrorsEnd) {
   bucket("degenerate", "-2^2", 3, 0);
   const CampaignCounts counts = counts_of(summary);
   for (const Json& row : {threshold_of(counts, "general"), threshold_of(counts, "", "uniform")}) {
-    EXPECT_EQ(row["disjoint"]["exponent"], 1);  // although the next pairs are at 2^2
+    EXPECT_EQ(row["disjoint"]["exponent"], 1);  // not 2, although the next pairs are at 2^2
     EXPECT_EQ(row["disjoint"]["above"], 50);
     EXPECT_NEAR(row["disjoint"]["bound"], 1 - std::pow(0.05, 1 / 50.0), 1e-6);
     EXPECT_TRUE(row["intersects"]["exponent"].is_null());
@@ -174,7 +174,7 @@ TEST(Tables, ThresholdIsWhereErrorsEnd) {
   const Json other = threshold_of(counts, "degenerate"), all = threshold_of(counts, "");
   EXPECT_TRUE(other["disjoint"]["exponent"].is_null());
   EXPECT_EQ(other["disjoint"]["largest"], 9);
-  EXPECT_EQ(other["intersects"]["exponent"], -7);  // without an error, the threshold is at the smallest margins seen
+  EXPECT_EQ(other["intersects"]["exponent"], -7);  // without an error, the threshold is the smallest margin seen
   EXPECT_EQ(other["intersects"]["above"], 6);
   EXPECT_TRUE(all["disjoint"]["exponent"].is_null());  // because all strata are pooled
 }

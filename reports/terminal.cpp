@@ -46,8 +46,8 @@ void print_strata(std::ostream& out, const Json& summary, const Screen& screen) 
 void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
   const auto lanes = summary["spec"]["lanes"].get<std::vector<std::string>>();
   std::vector<Counts> counts(lanes.size());
-  std::vector<std::optional<std::uint64_t>> differs(lanes.size());  // differences from cpu; nothing if not compared
-  std::vector<std::optional<std::uint64_t>> stored(lanes.size());   // wrong by storing; nothing for lanes in double
+  std::vector<std::optional<std::uint64_t>> differs(lanes.size());  // differences from cpu; nullopt if not compared
+  std::vector<std::optional<std::uint64_t>> stored(lanes.size());   // wrong by storing; nullopt for double lanes
   for (const auto& [stratum, row] : summary["strata"].items()) {
     for (std::size_t l = 0; l < lanes.size(); ++l) {
       const Json& of = row["lanes"][lanes[l]];
@@ -85,7 +85,7 @@ void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
   out << '\n' << table.text(screen);
 }
 
-// Says which exact decisions support the counts. A campaign stops if two exact decisions differ, so here they agree.
+// Describes which exact decisions support the counts. All of them agree, because a campaign stops if two differ.
 // doubles: whether some pairs have doubles. If so, GMP also decides the pairs whose verdict changes in float32.
 std::string decided_by(std::uint64_t disagreements, const Json& oracle, bool doubles) {
   const std::uint64_t exact = oracle["exact"], gmp = oracle["gmp"];
@@ -137,9 +137,8 @@ void print_summary(std::ostream& out, const Json& summary, const Json& oracle, c
 
 namespace {
 
-// Prints a row for each subject, scalar and policy, and a column for each variant among the lanes. '-' means that the
-// lane did not run, '!' that it is wrong. The exact CUDA lane appears under all device variants, because it is the same
-// for all of them.
+// Prints a row for each subject, scalar and policy, and a column for each of the lanes' variants. '-': the lane did not
+// run; '!': it is wrong. The exact CUDA lane appears under all device variants, because it is the same for all of them.
 void print_verdicts(std::ostream& out, const AnyPair& pair, const oracle::Truth& true_of_pair,
                     std::span<const Lane* const> lanes, std::span<const Verdict> verdicts, const Screen& screen) {
   const Verdict truth = true_of_pair.verdict;
@@ -197,7 +196,7 @@ void print_verdicts(std::ostream& out, const AnyPair& pair, const oracle::Truth&
 // Prints decimals and hex floats in one row, or each hex float below its decimal if the screen is too narrow.
 template <class Real>
 void print_coordinates(std::ostream& out, const BasicPair<Real>& pair, const Screen& screen) {
-  std::string cells[6][6];  // by vertex: x, y, z in decimals, then as hex floats
+  std::string cells[6][6];  // by vertex: x, y, z as decimals, then as hex floats
   int widths[6] = {};
   for (int v = 0; v < 6; ++v) {
     const Vec3<Real>& p = v < 3 ? pair.a[v] : pair.b[v - 3];

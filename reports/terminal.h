@@ -13,14 +13,13 @@
 
 namespace graze::reports {
 
-// Prints the contents of summary.json as two tables: errors by stratum and algorithm, and errors by lane. Also says
+// Prints the contents of summary.json as two tables: errors by stratum and algorithm, and errors by lane. Also prints
 // which exact decisions support these counts.   oracle: as in fuzz::Outcome.
 void print_summary(std::ostream& out, const nlohmann::ordered_json& summary, const nlohmann::ordered_json& oracle,
                    const Screen& screen = {});
 
-// Prints one pair: its coordinates in decimals and hex floats, the truth, and a verdict for each lane; wrong verdicts
-// are marked.
-// Requires: verdicts[i] is that of lanes[i].
+// Prints one pair: its coordinates as decimals and hex floats, the truth, and a verdict for each lane. Wrong verdicts
+// are marked.   Requires: verdicts[i] belongs to lanes[i].
 void print_pair(std::ostream& out, const AnyPair& pair, const oracle::Truth& truth, std::span<const Lane* const> lanes,
                 std::span<const Verdict> verdicts, const Screen& screen = {});
 

@@ -43,7 +43,7 @@ inline Json summary_of(const std::vector<std::string>& lanes, const std::vector<
   return summary;
 }
 
-// Runs small campaigns in a directory of their own: `one` for all tests, and others for single tests.
+// Runs small campaigns in a temporary directory: `one` for all tests, and others for single tests.
 class CampaignTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -75,7 +75,7 @@ class CampaignTest : public testing::Test {
 
   static Json summary(const std::string& name) { return Json::parse(fuzz::read_whole(root_ / name / "summary.json")); }
 
-  // Stores kinds like `graze minimize`, but for pairs that are not minimised.
+  // Stores kinds as `graze minimize` does, but for pairs that are not minimised.
   static void store_kinds(const std::string& name, const std::vector<std::string>& patterns = kLanes) {
     const fuzz::SelectedLanes under_test = lanes(patterns);
     fuzz::write_kinds(root_ / name, under_test, fuzz::find_kinds(under_test, root_ / name, summary(name)));

@@ -60,7 +60,7 @@ class Printer {
   }
 
  private:
-  // Splits the columns into blocks with as many columns as fit, at most `most` besides the first.
+  // Splits the columns into blocks of as many columns as fit, but at most `most` besides the first.
   std::vector<std::vector<std::size_t>> in_blocks(std::size_t most) const {
     std::vector<std::vector<std::size_t>> blocks;
     for (std::size_t next = 1; next < columns_.size(); ++next) {
@@ -74,7 +74,7 @@ class Printer {
     return blocks;
   }
 
-  // Whether the header is placed as a step, because it is wider than its cells.
+  // Whether the header is printed as a step, because it is wider than its cells.
   bool is_step(std::size_t c, Headers headers) const {
     return headers == Headers::steps && width_of(columns_[c].header) > cell_widths_[c] && c > 0;
   }
@@ -87,8 +87,8 @@ class Printer {
     return widest;
   }
 
-  // The width of the first column. A step's text is right-aligned with its column and needs room above the columns to
-  // its left, so it may widen the first column.
+  // The width of the first column. A step's text is right-aligned with its column and extends over the columns to its
+  // left, so it may widen the first column.
   int width_of_first(const std::vector<std::size_t>& some, Headers headers) const {
     int first = width(some[0], headers), before = 0;
     for (std::size_t i = 1; i < some.size(); ++i) {
@@ -119,7 +119,7 @@ class Printer {
     const auto add_header = [&](const std::string& text) {
       result += bold(screen_, text.substr(0, text.find_last_not_of(' ') + 1)) + '\n';
     };
-    for (std::size_t i = some.size(); i-- > 0;) {  // the steps, with the last column's on top
+    for (std::size_t i = some.size(); i-- > 0;) {  // the steps, the last column's on top
       if (!is_step(some[i], headers)) continue;
       std::string text = padded(columns_[some[i]].header, ends[i], Align::right);
       for (std::size_t j = i + 1; j < some.size(); ++j) {  // the stems of the steps above

@@ -10,7 +10,7 @@ namespace {
 const std::vector<std::string> kMapped = {"m/f32/cpu", "m/f32/x86-gcc", "m/f32/arm64-gcc", "m/f32/x87",
                                           "m/f64/cpu", "m/f64/x86-gcc", "m/f64/arm64-gcc"};
 
-// A summary of these lanes. Each signature is given by its wrong lanes and its number of pairs.
+// A summary of these lanes. Each signature is given as its wrong lanes and its number of pairs.
 Json campaign_of(const std::vector<std::pair<std::string, int>>& signatures) {
   Json summary = summary_of(kMapped, {"thesis"}, {});
   for (const auto& [wrong, count] : signatures)
@@ -23,7 +23,7 @@ Json map_of(const Json& summary) {
   return toolchain_map(counts, signature_rows(counts, summary));
 }
 
-// The differences in the cell of a row, such as "m/f32", and a variant.
+// The differences in the cell of this row, such as "m/f32", and this variant.
 Json differs(const Json& map, const std::string& row, const std::string& variant) {
   for (const Json& r : map["rows"]) {
     if (r["algorithm"].get<std::string>() + '/' + r["scalar"].get<std::string>() != row) continue;

@@ -53,10 +53,10 @@ std::string choice_words(const TuneQuestion& q, const std::string& policy) {
                      policy.empty() || e.name == e.written ? "" : fmt::format(" (now {})", printable(e.written)));
 }
 
-// The word for what is tuned, as in "No tolerance is good enough here".
+// The word for the tuned quantity, as in "No tolerance is good enough here".
 std::string_view setting(const TuneQuestion& q) { return q.source ? "value" : "tolerance"; }
 
-// "value of kEps from 0 up". A sweep has no values below 0, because they mean something else.
+// "value of kEps from 0 up". A sweep has no negative values, because they mean something else.
 std::string value_of(const TuneQuestion& q) { return "value of " + printable(q.source->epsilon.name) + " from 0 up"; }
 
 // "12 false negatives (0.012 %) and 0 false positives of 100,000 pairs"
@@ -75,7 +75,7 @@ std::string_view doubled_words(const TuneQuestion& q, const PolicyErrors& here, 
   return analysis::doubles(here.wrong(), there.wrong(), here.pairs) ? "errors" : words(q.forbid);
 }
 
-// Says how many pairs would show that the rate is under the limit, if more pairs have the same rate.
+// Describes how many pairs would show that the rate is under the limit, if more pairs have errors at the same rate.
 std::string pairs_to_show(const TuneQuestion& q, const Tuned& t) {
   const std::uint64_t errors = analysis::forbidden(t.confirmed, q.forbid), pairs = t.confirmed.pairs;
   if (errors == 0)
@@ -126,8 +126,8 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
       setting(q), q.source ? "no " + value_of(q) : "no tolerance of " + q.lane, words(q.forbid), q.max_rate, of);
 }
 
-// A warning if the chosen value is 0 and errs differently from the next smallest value; otherwise empty. A comparison
-// with 0 also decides values that are exactly 0, for example where triangles touch.
+// Warns if the chosen value is 0 and errs differently from the next smallest value; otherwise empty. A comparison with
+// 0 also decides values that are exactly 0, for example where triangles touch.
 std::string zero_words(const TuneQuestion& q, const Tuned& t) {
   if (t.curves.empty()) return "";
   const std::vector<PolicyErrors>& points = t.curves[0].points;

@@ -70,7 +70,7 @@ struct Image {
     image.width = static_cast<png_uint_32>(width);
     image.height = static_cast<png_uint_32>(height);
     image.format = PNG_FORMAT_RGB_COLORMAP;
-    // Without failing foreign code, its colours are left out of the palette.
+    // If no foreign code fails, the palette leaves out the colours for that.
     const bool fails = std::any_of(colours.begin(), colours.end(), [](std::uint8_t c) { return c > kPaper; });
     image.colormap_entries = fails ? std::size(kPalette) : kPaper + 1;
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
@@ -96,7 +96,7 @@ Image picture(const analysis::UlpPanel& panel) {
 
 using CellCounts = std::array<int, analysis::kCellKinds>;
 
-constexpr std::size_t kFirstOfLanes = 2;  // a lane's correct verdicts are not counted in words
+constexpr std::size_t kFirstOfLanes = 2;  // the text does not count a lane's correct verdicts
 
 std::string words_of(const CellCounts& counts, std::size_t first) {
   std::string text;
@@ -130,7 +130,7 @@ bool are_counts(const std::string& text, bool of_truth) {
   return words_of(counts, of_truth ? 0 : kFirstOfLanes) == text && (!of_truth || all == kMapCells);
 }
 
-// For each kind, whether some panel contains it.
+// For each kind of cell, whether some panel contains it.
 std::array<bool, analysis::kCellKinds> kinds_in(const analysis::UlpMap& map) {
   std::array<bool, analysis::kCellKinds> found{};
   for (const analysis::UlpPanel& panel : map.panels) {

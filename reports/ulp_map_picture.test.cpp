@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads pictures back with the PNG library, and tests that each pixel has its cell's colour.
+// Decodes pictures with the PNG library, and tests that each pixel has its cell's colour.
 #include "reports/ulp_map_picture.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ struct Picture {
 
 const Pair kPair{{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}}, {{0.75f, 0.75f, 0}, {0.75f, 0.75f, 1}, {0.5f, 0.75f, 1}}};
 
-// A map in which each row has one kind of cell, and the kinds take turns.
+// A map whose rows each have one kind of cell, all kinds in turn.
 analysis::UlpMap striped(int lanes) {
   analysis::UlpMap map{kPair, {9, 10}, {}};
   for (int p = 0; p <= lanes; ++p) {
@@ -83,7 +83,7 @@ TEST(UlpMapPicture, SheetsHoldAllPanelsAtTwiceTheSize) {
   EXPECT_EQ(sheet_png(map), sheet_png(striped(8)));
 }
 
-// The palette and the legend list failures of foreign code only if there are some.
+// The palette and the legend include failures of foreign code only if there are some.
 TEST(UlpMapPicture, FailuresOfForeignCodeHaveColoursAndALegendOnlyWhereTheyAre) {
   analysis::UlpMap map = striped(1);
   for (analysis::Cell& cell : map.panels[1].cells) {

@@ -104,7 +104,7 @@ std::string operands_sentence(const Json& operands) {
   return text;
 }
 
-// The cells that follow the place of a line in both tables.
+// The cells after the line's location, for both tables.
 std::vector<std::string> line_cells(const Json& line) {
   const Octaves sizes = sizes_of(line);
   return {grouped(number_at(line, "compared")),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presents how often the verdicts of two lanes of a user's code differ, which is part of the results of `graze
-// discrepancy`. For a CUDA source it also presents how the operands of its comparisons differ.
+// Presents how often the verdicts of two lanes of a user's code differ, a part of the results of `graze discrepancy`.
+// For a CUDA source, also presents how the operands of its comparisons differ.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -17,15 +17,16 @@ namespace graze::reports {
 std::string line_of(const cuda::SourceLine& line);
 
 // {"first", "second", "total": {"pairs", "differs", "of_first": counts, "of_second": counts},
-//  "strata": {stratum: the same, and "simplest": {"place", "pair"}, the simplest pair that differs}}
-// operands: null if they were not observed. Otherwise there is also "operands": {"pairs", "verdict", "lines": [{"line",
-// "within", "compared", …}]}, or "why_no_operands".
+//  "strata": {stratum: the same, and "simplest": {"place", "pair"}, the simplest pair with different verdicts}}
+// operands: null if they were not observed. Otherwise the result also has "operands": {"pairs", "verdict", "lines":
+// [{"line", "within", "compared", …}]}, or "why_no_operands".
 nlohmann::ordered_json verdicts_json(const analysis::TwoDeciders& deciders,
                                      const std::vector<strata::PairSource>& sources,
                                      const std::vector<analysis::VerdictsApart>& found,
                                      const analysis::OperandsApart* operands);
 
-// Says how often the verdicts differ, which lane is wrong, and which comparison decides or why no value is compared.
+// Describes how often the verdicts differ, which lane is wrong, and which comparison decides, or why no value is
+// compared.
 // of, here and below: the result of verdicts_json.
 std::string verdicts_sentence(const nlohmann::ordered_json& of);
 

@@ -34,7 +34,7 @@ constexpr std::string_view kModules[] = {{kModuleF32, sizeof kModuleF32 - 1}, {k
 constexpr std::uint64_t kReplaySeed = 20120131;
 constexpr std::uint64_t kReplayed = 16;  // pairs of each stratum
 
-// The bits of the numbers. Unless their type is double, float32 must hold them exactly.
+// The bits of the numbers. If the type is float32, it must hold them exactly.
 std::string bits_of(std::span<const double> numbers, Scalar type) {
   std::string text;
   for (const double x : numbers)
@@ -89,7 +89,7 @@ Json replay(Scalar type) {
   return {{"lanes", lanes}, {"pairs", pairs}};
 }
 
-// The distinct kinds of evidence for the twins.
+// The distinct kinds of evidence for twins.
 std::string evidence(Scalar type) {
   std::set<std::string> kinds;
   for (const Lane* lane : replayed_lanes(type)) {

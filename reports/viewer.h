@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The viewer is one HTML file. In it, graze.wasm or graze_f64.wasm decides a pair again whenever the pair changes.
+// The viewer is one HTML file. In it, graze.wasm or graze_f64.wasm decides a pair again after each change.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct SaidOfPair {
   std::string lane;
   Verdict verdict;
   bool wrong;
-  bool stored = false;  // whether the verdict is the campaign's, because the code is gone
+  bool stored = false;  // whether the verdict comes from the campaign, because the code is gone
 };
 
 struct ViewedPair {
@@ -30,24 +30,24 @@ struct ViewedPair {
 struct Viewed {
   std::string title;              // title of the list of pairs
   std::vector<ViewedPair> pairs;  // if empty, the special cases of 2012 are shown
-  // The triangles of a mesh or a query, shown against the first triangle of a pair. Triangles of float32 require pairs
-  // of float32.
+  // The triangles of a mesh or a query, shown against the first triangle of a pair. If they are float32, the pairs must
+  // be float32 too.
   std::vector<std::array<Vec3<double>, 3>> triangles;
   std::vector<std::size_t> ids;           // ids of the triangles; if empty, they are numbered in order
   bool opens_with_triangles = false;      // show all triangles at once instead of a pair
-  nlohmann::ordered_json lanes_left_out;  // lanes of a user's code and the reasons; null without any
+  nlohmann::ordered_json lanes_left_out;  // lanes of a user's code, with reasons; null if there are none
   std::size_t random = 0;                 // if not 0, show this many random triangles of 2012 first
 };
 
-// Limits of the page's size.
+// Limits on the size of the page.
 inline constexpr std::size_t kMostViewedPairs = 5000, kMostViewedTriangles = 5000;
 
 // Whether this build has the viewer of reports/web, which is built with Node and a compiler for WebAssembly.
 bool has_viewer();
 
 // Returns the viewer's data for pairs of this coordinate type: its module, the evidence for the twins, and stored
-// verdicts. The viewer checks itself against these verdicts when it opens. They are on a few hundred pairs: some from
-// every stratum, and the canaries (cuda/twin/canaries.pairs). Null if the build has no viewer.
+// verdicts on a few hundred pairs: some from every stratum, and the canaries (cuda/twin/canaries.pairs). When the
+// viewer opens, it checks itself against these verdicts. Null if the build has no viewer.
 nlohmann::ordered_json viewer_parts(Scalar coordinates);
 
 // Returns the page. If any of its pairs has doubles, all pairs are shown as doubles.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# Builds the page of SOURCE (reports/web) in BUILD, and writes it to OUT as a C++ string. If npm cannot fetch its
+# Builds the page of SOURCE (reports/web) in BUILD, and writes it to OUT as a C++ string. If npm cannot download its
 # packages, for example offline, the string is empty, and reports are plain pages. Also writes the viewer to VIEWER, and
-# the modules WASM_F32 and WASM_F64 to MODULES, as base64 of gzip. Without modules, all these strings are empty.
+# the modules WASM_F32 and WASM_F64 to MODULES, as base64 of gzip. Without modules, these strings are empty.
 file(MAKE_DIRECTORY ${BUILD})
 file(REMOVE_RECURSE ${BUILD}/src)
 foreach(part index.html view.html package.json package-lock.json tsconfig.json vite.config.js src)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Runs the page's tests from SOURCE in BUILD, which has their packages, on a report made by GRAZE.
+# Runs the page's tests from SOURCE in BUILD, which contains their packages, on a report made by GRAZE.
 find_program(CHROMIUM NAMES chromium chromium-browser google-chrome)
 if(NOT NODE)
   message("reports.Page skipped: no Node found (Debian's packages nodejs and npm)")

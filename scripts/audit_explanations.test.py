@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/audit_explanations accepts explanations of pairs of every kind, and rejects planted false ones."""
+"""scripts/audit_explanations accepts explanations of all kinds of pairs, and rejects planted false ones."""
 import copy
 import json
 import os
@@ -31,8 +31,8 @@ PAIRS = [
     "degenerate:1:4",
     "shared_edge:1:16",
     "shared_edge:21:21",
-    # Numbers of 2^72, for which exact arithmetic needs more bits on the lane's path than on its own path; also a pair
-    # whose cause follows from its numbers.
+    # Numbers of 2^72, for which exact arithmetic needs more bits on the lane's path than on its own. Also a pair whose
+    # cause can be read from its numbers.
     "extreme_scale:1:105",
     "mixed_scale:1:57",
     "extreme_scale:1:46",

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The sources of scripts/campaign's build compile. It has larger unity groups than other builds, so private names of
-different files may clash only there. Checks the syntax of each group in a separate build; generates no code."""
+"""The sources compile in the build of scripts/campaign. Its unity groups are larger than those of other builds, so
+private names of different files may clash only there. Checks each group's syntax in a separate build; generates no
+code."""
 import concurrent.futures
 import json
 import os

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/findings accepts only a page that shows its program's output. Every page of docs/findings has all parts."""
+"""scripts/findings accepts only pages that show their program's output. Every page of docs/findings has all parts."""
 import os
 import pathlib
 import subprocess
@@ -38,7 +38,7 @@ the program
 {says}
 ```
 """
-# Stand-ins: npm notes what it installs, or prints a setting; node prints what npm has installed, and its program.
+# Stand-ins: npm records what it installs, or prints a setting; node prints what npm has installed, then its program.
 NPM = """case $1 in
   config) echo "the $3 of npm" ;;
   install) shift; case "$*" in *missing*) echo "no such package"; exit 1 ;; esac; mkdir node_modules && echo "$@" > node_modules/installed ;;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/format --check names the files that are not formatted, and fails on files that it cannot parse and on an
-empty list.
+"""scripts/format --check names the files that are not formatted. It fails if it cannot parse a file, and if it finds no
+files.
 
   format.test.py [BUILD]   BUILD: the build tree that has prettier, default build
 """

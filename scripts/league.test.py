@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of scripts/league, the adapters and their README agree. The four pairs detect subjects that are used
-wrongly."""
+"""The table of scripts/league, the adapters and their README agree. The four pairs detect wrong uses of a library."""
 import pathlib
 import subprocess
 import tempfile

@@ -93,7 +93,7 @@ def grid_records(where, grid, unit):
 
 
 def records(name, topic, machines):
-    """Returns: one record for each measurement, oldest first; its run is under "run". Throws: Malformed."""
+    """Returns: one record for each measurement, oldest first, with its run under "run". Throws: Malformed."""
     found = []
     for i, run in enumerate(topic["run"], 1):
         where = f"{name}.toml, run {i}"
@@ -147,7 +147,7 @@ def read(folder=RECORDS):
 
 
 def text(value, unit=""):
-    """A number as written, with thousands separators, and its unit."""
+    """A number as it is written, with thousands separators, and its unit."""
     if value is None:
         return ""
     number = " to ".join(

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/measurements.md is the output of scripts/measurements.py for the records. Each record has its keys with their
-types. Docs.CommitsThatTheyNameAreInTheHistory checks the commits."""
+"""docs/measurements.md is the output of scripts/measurements.py for the records. Each record has the right keys, with
+the right types. Docs.CommitsThatTheyNameAreInTheHistory checks the commits."""
 import pathlib
 import re
 import shutil

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/mutate on a small project: a mutant of each kind has the right result, and resuming tests nothing twice. The
-mutants in the project's own list exist."""
+"""scripts/mutate on a small project: mutants of each kind have the right result, and a resumed run repeats no test. All
+mutants in Graze's own list exist."""
 import json
 import pathlib
 import subprocess
@@ -123,7 +123,7 @@ class Mutate(unittest.TestCase):
 
     def test_is_not_delayed_by_tests_that_were_timed_before(self):
         first, _ = self.run_script()
-        # For the header, its test is compiled again. For the source, the test's existing object is used.
+        # For the header, the test is recompiled. For the source, the test's existing object is used.
         self.assertRegex(
             first.stdout, r"(?m)^small part/small.test.cpp part/small.test.cpp: pass without a mutant, in \d"
         )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The models of near_models: their sizes, their exact numbers, and the same bytes twice."""
+"""Tests the models' sizes and exact numbers, and that near_models writes the same bytes each time."""
 import pathlib
 import subprocess
 import sys

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The npm package works for a new user, installed offline from its tarball into an empty project: its examples run,
-and TypeScript accepts its types. Under `node --test`, a wrong function fails with a smallest pair, and a right
-function passes. If there is a Chromium, the three.js example runs in it too."""
+"""The npm package works for a new user who installs it offline from its tarball into an empty project: its examples
+run, and TypeScript accepts its types. Under `node --test`, a wrong function fails with a smallest pair, and a correct
+function passes. If there is a Chromium, the three.js example also runs in it."""
 import functools
 import http.server
 import os
@@ -39,7 +39,7 @@ export { load, least, most, smallest };
 """
 
 
-# Prints what a page says as soon as it is ready.
+# Prints a page's result as soon as it is ready.
 READ = """import { chromium } from '%s/@playwright/test/index.mjs';
 const [executablePath, address] = process.argv.slice(2);
 const browser = await chromium.launch({ executablePath, args: ['--no-sandbox'] });
@@ -52,7 +52,7 @@ await browser.close();
 
 
 def block(start):
-    """The code block of the README that has this text."""
+    """The code block of the README that contains this text."""
     return next(code for code in re.findall(r"```\w*\n(.*?)```", README, re.S) if start in code)
 
 
@@ -111,7 +111,7 @@ class Package(unittest.TestCase):
         for line in block("36,443").splitlines():
             if line.strip() != "…":
                 self.assertIn(line.strip(), said)
-        # The same counts and pair as in C++.
+        # The counts and the pair are the same as in C++.
         cpp = (ROOT / "docs/testing.md").read_text(encoding="utf-8")
         self.assertIn(re.search(r"overlap is wrong on .*", said)[0], cpp)
         a, b = re.search(r"a = \[(.*)\],\n *b = \[(.*)\];", said).groups()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """results.test.py [GRAZE]: docs/results is the output of scripts/results for the records. Each number on it comes from
-a record, and the records agree with the pages and data that they were taken from. With GRAZE, the web site is written
-too, and what it says about its pairs is compared with the verdicts of the lanes."""
+a record, and the records agree with the pages and data that they were taken from. With GRAZE, the web site is also
+written, and its texts about pairs are compared with the verdicts of the lanes."""
 import json
 import math
 import pathlib
@@ -30,7 +30,7 @@ def written():
 
 
 def table(path, after, head):
-    """Returns: {row: {column: cell}} of the first table of a page that begins with `head`, after the text `after`."""
+    """Returns: {row: {column: cell}} of the first table whose text begins with `head`, after the text `after`."""
     text = (DOCS / path).read_text(encoding="utf-8")
     text = text[text.index(after) :]
     lines = text[text.index(head) :].splitlines()
@@ -194,7 +194,7 @@ class Sources(unittest.TestCase):
 
 class Site(unittest.TestCase):
     def checked(self, name, lanes):
-        """What graze check prints for a pair of the site."""
+        """The output of graze check for a pair of the site."""
         if GRAZE is None:
             self.skipTest("needs the program graze as argument")
         command = [GRAZE, "check", "-", "--lanes", lanes]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Output of same_results for two stand-ins for graze, which write what a test requests."""
+"""Output of same_results for two stand-ins for graze, which write whatever a test requests."""
 import pathlib
 import subprocess
 import sys
@@ -57,7 +57,7 @@ class SameResults(unittest.TestCase):
         status, said = self.run_script(status="2")
         self.assertEqual(status, 1)
         self.assertIn("new graze explain mixed_scale:1:3", said)
-        broken = self.graze("broken", status="2")  # both fail alike
+        broken = self.graze("broken", status="2")  # both fail in the same way
         self.assertEqual(subprocess.run([sys.executable, SCRIPT, broken, broken], capture_output=True).returncode, 1)
         self.assertEqual(
             subprocess.run([sys.executable, SCRIPT, broken, self.folder], capture_output=True).returncode, 2

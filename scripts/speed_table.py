@@ -21,8 +21,8 @@ STAGES = ("bounded", "doubles", "int128", "wide")
 
 
 def read(path):
-    """The file's context, and {decision: {stratum: run}} on pairs of float32 and of doubles. Each value of a run is the
-    median of its repetitions."""
+    """The file's context, and {decision: {stratum: run}} for float32 pairs and for pairs of doubles. Each value of a
+    run is the median of its repetitions."""
     with open(path, encoding="utf-8") as file:
         document = json.load(file)
     repetitions = {}
@@ -63,7 +63,7 @@ def lanes_by_strata(results, unit):
 
 
 def in_doubles(lane, of_doubles, unit, beside):
-    """The exact lane on pairs of doubles; empty without such benchmarks. beside: heads and cells of further columns."""
+    """The exact lane on pairs of doubles; empty without such benchmarks. beside: headings and cells of more columns."""
     rows = [[s, unit(run), *(cell(s, run) for cell in beside.values())] for s, run in of_doubles.get(lane, {}).items()]
     return f"\n### Pairs of doubles\n{table(['stratum', lane, *beside], rows)}" if rows else ""
 

@@ -13,7 +13,7 @@ DEVICE = {"device": "D", "driver": "13.0", "nvcc": "13.0.88", "flags": "-O3", "c
 
 
 def runs(name, *seconds, items=1000, **counters):
-    """A repetition for each time, and an aggregate, which must be ignored."""
+    """One repetition for each time, and an aggregate, which must be ignored."""
     each = [{"run_name": name, "run_type": "iteration", "items_per_second": items / s, **counters} for s in seconds]
     return [*each, {**each[0], "run_type": "aggregate", "items_per_second": 1.0}]
 

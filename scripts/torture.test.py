@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Output of torture for stand-ins for graze: no violation for a correct one, and the right violation for each wrong
-one."""
+"""Output of torture for stand-ins for graze: no violation for a correct stand-in, and the right violation for each
+wrong one."""
 import contextlib
 import io
 import pathlib
@@ -156,7 +156,7 @@ class Torture(unittest.TestCase):
         return file
 
     def attack(self, graze, kind, rounds=1):
-        """Runs up to `rounds` rounds, until one finds something. Returns: its counts and the output."""
+        """Runs up to `rounds` rounds, stopping at the first violation. Returns: its counts and the output."""
         bench = torture.Bench(graze, 1, self.folder / f"{graze.name}-{kind}")
         said = io.StringIO()
         for number in range(rounds):
@@ -198,7 +198,7 @@ class Torture(unittest.TestCase):
             ("outputs", "replaces", "found otherwise"),
         ):
             with self.subTest(f"{kind} {mode}"):
-                rounds = 50 if mode in ("loses", "collides") else 1  # whether it does depends on when it is killed
+                rounds = 50 if mode in ("loses", "collides") else 1  # it misbehaves only at some kill times
                 counts, said = self.attack(self.graze(mode), kind, rounds)
                 self.assertEqual(counts["violations"], 1)
                 self.assertRegex(said, f"^VIOLATION in {kind}:[0-9]+: ")
@@ -211,7 +211,7 @@ class Torture(unittest.TestCase):
 
     def test_what_the_real_one_would_do_wrong_with_results(self):
         """Replaces the program with a script around it. The real program dies with its shell, and the next run waits
-        for that."""
+        for its end."""
         real = SCRIPT.parents[1] / "build/bin/graze"
         if not real.exists():
             self.skipTest("no build/bin/graze")

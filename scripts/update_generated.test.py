@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/update_generated puts what tests print into strata/golden.h and cuda/twin/contracted_otherwise.inc, and
+"""scripts/update_generated copies tests' output into strata/golden.h and cuda/twin/contracted_otherwise.inc, and
 changes nothing else."""
 import pathlib
 import sys

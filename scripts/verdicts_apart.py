@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""verdicts_apart.py CAMPAIGN SUBJECT ROW,… COLUMN,…: prints how often two lanes of a subject have different
-verdicts, as Markdown. ROW and COLUMN are lane names without the subject, such as f32/cpu. A cell N (A to B)
-means that one in N pairs differs, with the 95 % interval from A to B, rounded outward. If none differs, the cell is
-0 (over A)."""
+"""verdicts_apart.py CAMPAIGN SUBJECT ROW,… COLUMN,…: prints as Markdown how often the verdicts of two lanes of a
+subject differ. ROW and COLUMN are lane names without the subject, such as f32/cpu. A cell N (A to B) means that one
+pair in N differs, with the 95 % interval from A to B, rounded outward. If no pair differs, the cell is 0 (over A)."""
 import json
 import math
 import pathlib
@@ -29,7 +28,7 @@ def read(campaign):
 
 
 def answers(signatures, subject):
-    """[(number of pairs, {lane: how it is wrong})] of the pairs on which a lane of the subject is wrong."""
+    """[(number of pairs, {lane: how it is wrong})] for the pairs on which a lane of the subject is wrong."""
     found = []
     for signature in signatures:
         place, lanes = signature["key"].split(":", 1)

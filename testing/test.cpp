@@ -49,7 +49,6 @@ bool accepts(unsigned outside, Verdict verdict, const Pair& pair, const Relation
          (!is_failure(verdict) && verdict != Verdict::declined && is_outside(outside, pair, relation));
 }
 
-// A value that is no verdict counts as crashed.
 Verdict checked(Verdict said) { return said <= Verdict::unstable ? said : Verdict::crashed; }
 
 struct Tested {
@@ -107,7 +106,7 @@ std::string with_commas(std::uint64_t count) {
 }
 
 std::string percent(double value, int digits) {
-  char text[32];  // not with to_chars, whose tables would enlarge the WebAssembly
+  char text[32];  // to_chars would enlarge the WebAssembly module by its tables
   std::snprintf(text, sizeof text, "%.*g %%", digits, value);
   return text;
 }
@@ -148,7 +147,7 @@ std::string table(const std::vector<Row>& rows) {
   return text;
 }
 
-// Says which options accept both answers on this pair; empty if none does.
+// Returns which options accept both answers on this pair; empty if none does.
 std::string conventions_of(const Pair& pair, const Relation& relation) {
   constexpr std::pair<Outside, const char*> kOptions[] = {{kOutsideTouching, ".touching"},
                                                           {kOutsideCoplanar, ".coplanar"},
@@ -173,7 +172,7 @@ std::string pair_in_words(std::string_view name, const Pair& pair, const std::st
          (is_name ? std::string(name) : "YOUR_FUNCTION") + "\n";
 }
 
-// Replaces the number with the environment variable's, if it is set.   Throws: std::invalid_argument.
+// Replaces the number with the environment variable's value, if it is set.   Throws: std::invalid_argument.
 void take_from_environment(const char* variable, std::uint64_t& number) {
   const char* text = std::getenv(variable);
   if (!text) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clips the hulls (oracle/clipping.h) with 113 bits. Numbers are rounded, so a point near a plane counts as on the
-// plane. The exact decision gives the kind of the common set.
+// Clips the hulls (oracle/clipping.h) with 113 bits. Numbers are rounded, so a point near a plane counts as on it. The
+// exact decision gives the kind of the common set.
 #include "wasm/drawing.h"
 
 #include <algorithm>
@@ -46,7 +46,7 @@ Polygon section(const Point (&p)[3], const HalfSpace& plane) {
   return ends.size() > 2 ? Polygon{} : ends;  // the whole hull lies in the plane
 }
 
-// The line in which the planes meet, cut to the box around the points, which is enlarged by half.
+// The line in which the planes meet, clipped to the points' bounding box enlarged by half.
 Polygon line_of(const Point (&a)[3], const Point (&b)[3], const Point& na, const Point& nb) {
   const Point along = cross(na, nb);
   const Point at = (cross(nb, along) * dot(na, a[0]) + cross(along, na) * dot(nb, b[0])) * (1 / dot(along, along));
@@ -103,7 +103,7 @@ Connection of_edges(const Point (&a)[3], int i, const Point (&b)[3], int j) {
   return {square(q - p), p, q, feature_at(s, i), feature_at(t, j)};
 }
 
-// The connection from the vertex to the foot of its perpendicular on the face's plane, if the foot is in the face.
+// Connects the vertex to the foot of its perpendicular on the face's plane, if the foot is in the face.
 Connection to_face(const Point& vertex, const Point (&face)[3]) {
   const Point normal = normal_of(face);
   if (is_zero(normal)) return {};
@@ -162,7 +162,7 @@ void add_witness(Drawing& result, const Connection& found, int sign, const Point
   }
   result.low_a = static_cast<double>(low[0] - high[0]);
   result.high_a = 0;
-  // For a tiny gap, the axis is too imprecise for the difference of low[1] and high[0].
+  // For a tiny gap, the axis is too imprecise to compute low_b as low[1] - high[0].
   result.low_b = static_cast<double>(sign * length);
   result.high_b = static_cast<double>(sign * length + (high[1] - low[1]));
   result.witness_count = write({found.p + from, found.q + from}, result.witness, 2);

@@ -13,7 +13,7 @@ struct Drawing {
   static constexpr int kMost = 9;  // the most extreme points of a common set
   std::int32_t contact_count, line_count, section_a_count, section_b_count;
   Vec3<double> contact[kMost];  // the common set's extreme points, in order around it
-  Vec3<double> line[2];         // the line in which the planes meet, cut to the box around the pair, enlarged by half
+  Vec3<double> line[2];         // the line in which the planes meet, clipped to the pair's box enlarged by half
   Vec3<double> section_a[2], section_b[2];  // the parts of that line in the triangles a and b
   // The distance that the margin measures. For a disjoint pair, it joins the nearest points of a and b. For an
   // intersecting pair, it is the shortest translation of b that separates the pair, drawn from the middle of the

@@ -38,7 +38,7 @@ inline MarginBounds bounds_of(const DoublePair& pair, Verdict verdict) {
   return bounds;
 }
 
-// The trace hash of a lane with a twin on a pair, which a lane in float rounds to float32.
+// The lane's trace hash on the pair, which a float lane first rounds to float32. Requires: a lane with a twin.
 inline std::uint64_t trace_of(const Lane& lane, const AnyPair& pair) {
   std::uint64_t hash = 0;
   const AnyPair seen = analysis::seen_by(lane, pair);

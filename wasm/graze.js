@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // graze.wasm and graze_f64.wasm for JavaScript and TypeScript: exact triangle-triangle intersection, and the verdicts
-// of published algorithms on the same pair. The algorithms run in float32 and float64, as on the CPU and, through their
-// twins, as on the GPU. This file has no dependencies. It runs in Node 18 or newer and in browsers since 2021.
+// of published algorithms on the same pair. The algorithms run in float32 and float64, with the CPU's arithmetic and,
+// through their twins, the GPU's. This file has no dependencies. It runs in Node 18 or newer and in browsers since
+// 2021.
 
 /** The 18 coordinates of a[0] to a[2], then of b[0] to b[2]. graze.wasm rounds each coordinate to float32; graze_f64.wasm decides the doubles. @typedef {ArrayLike<number>} Pair */
 /** @typedef {'disjoint' | 'intersects' | 'declined'} Verdict declined: a coordinate is not finite, or a lane cannot decide. */
@@ -11,8 +12,8 @@
 /** @typedef {[number, number, number]} Point */
 /** @typedef {{ contact: Point[], line: Point[], sections: [Point[], Point[]], witness: Point[], along: [number, number][], features: [string, string] }} Drawing line: the line in which the planes meet; sections: the parts of the line in a and in b. witness: the distance that the margin measures, between the nearest points of a and b or along the shortest push of b that separates the triangles; along: the extents of a and b along the witness, with the end of a at 0; features: the features of a and b that the witness joins, or that determine the push's direction. */
 /** @typedef {{ line: string, site: string, relation: string, held: boolean, holds: boolean, result: number, left: number, right: number, exactLeft: number, exactRight: number }} Step relation '': the step has only a value, left. held: the outcome in the lane; holds: the outcome with 113 bits. result: the index of left among the numbers that the run computed, or -1. */
-/** @typedef {{ line: string, from: string }} Site An operation that is rounded once although the source has two operations, and the place into which it is inlined. */
-/** @typedef {{ decide: (pairs: number, count: number, verdicts: number) => void }} Host The function that the module calls. It sets the verdicts of `count` pairs; both are at these addresses. */
+/** @typedef {{ line: string, from: string }} Site A source line with two operations that are rounded only once, and the place into which it is inlined. */
+/** @typedef {{ decide: (pairs: number, count: number, verdicts: number) => void }} Host The function that the module calls. It decides the `count` pairs at the address `pairs` and writes their verdicts to the address `verdicts`. */
 /** @typedef {ReturnType<typeof graze_of>} Graze */
 
 /** @type {readonly Verdict[]} */
@@ -107,9 +108,9 @@ function graze_of(exports, host) {
     lanes,
     /** The strata's names; those of doubles end in "/f64". */
     strata,
-    /** The most pairs in one call of the functions below that take several pairs. */
+    /** The largest number of pairs in a call of the functions below that take several pairs. */
     room: /** @type {number} */ (exports.room()),
-    /** For experts: the module's own functions, its texts and numbers, and the function that the module calls. */
+    /** For experts: the module's own functions, access to its texts and numbers, and the function that it calls. */
     exports,
     text_at,
     set_text,
@@ -117,7 +118,7 @@ function graze_of(exports, host) {
     host,
 
     /**
-     * Each lane's verdict on the pair; null if the lane cannot have the policy that is set.
+     * Each lane's verdict on the pair; null if the lane cannot have the current policy.
      * @param {Pair} pair @returns {Record<string, Verdict | null>}
      */
     decide(pair) {
@@ -258,9 +259,9 @@ function graze_of(exports, host) {
     /**
      * The steps of a lane without a policy, in order: its comparisons, and the values that a policy would receive. A
      * lane in f32 rounds the pair to float32 first. Null if the steps are not known.
-     * own: true if the values are known to be the lane's; false if they come from a rule of contraction that gives the
+     * own: true if the values are known to be the lane's; false if they come from a contraction rule that gives the
      * lane's verdict.
-     * with_113_bits: the algorithm's verdict if every operation has 113 bits.
+     * with_113_bits: the algorithm's verdict if every operation is computed with 113 bits.
      * @param {Pair} pair @param {string} id @returns {{ own: boolean, steps: Step[], with_113_bits: Verdict } | null}
      */
     steps(pair, id) {
@@ -289,8 +290,8 @@ function graze_of(exports, host) {
     },
 
     /**
-     * The contractions because of which a cuda-fma lane without a policy decides differently from cuda-nofma. Empty if
-     * the verdicts are equal.
+     * The contractions that make a cuda-fma lane without a policy decide differently from cuda-nofma. Empty if the
+     * verdicts are equal.
      * @param {Pair} pair @param {string} id @returns {Site[]}
      */
     contractions(pair, id) {

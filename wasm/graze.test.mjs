@@ -152,7 +152,7 @@ function check_interface_of_doubles() {
   for (const text of ['', 'x', '1e309', '1 2', '0x']) assert.equal(graze.parse(text), null, text);
   assert.equal(graze.nudged(0, -1), -(2 ** -1074));
   assert.equal(graze.nudged(1, 1), 1 + 2 ** -52);
-  // Two parallel triangles of a model in metres. They are apart as doubles, and coincide in float32.
+  // Two parallel triangles from a model in metres. They are disjoint as doubles and coincide in float32.
   const at = (x) => [x, 0, 0, x, 1, 0, x, 0, 1],
     apart = [...at(1000000.01), ...at(1000000.02)];
   assert.equal(graze.truth(apart).verdict, 'disjoint');
@@ -206,8 +206,8 @@ function check_interface() {
   assert.match(output, /cuda-fma: disjoint\n$/);
 }
 
-// The witness is as long as the margin, up to the margin's bounds and the rounding of the ends. For a gap, its
-// direction separates the triangles.
+// The witness is as long as the margin, within the margin's bounds and the rounding of the witness's ends. For a gap,
+// its direction separates the triangles.
 function check_witness() {
   const found = { gap: 0, push: 0 };
   for (const stratum of graze.strata) {

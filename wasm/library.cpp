@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replacements for parts of the native build: correct fused multiply-adds, empty tables for lanes that the module does
-// not have, backends without descriptions, and the functions of twin.h that would load users' libraries.
+// Replacements for parts of the native build: correct fused multiply-adds, empty tables for lanes that the module
+// lacks, backends without descriptions, and the functions of twin.h that would load users' libraries.
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -24,8 +24,8 @@ extern "C" float fmaf(float x, float y, float z) {
   return static_cast<float>(std::bit_cast<double>(bits));
 }
 
-// Calls wasi-libc's fma unless z is zero. Then wasi-libc would add the rounded product, and lose the sign of a product
-// that rounds to -0. The linker (--wrap) replaces calls of fma with calls of this function.
+// Calls wasi-libc's fma unless z is zero. For a zero z, wasi-libc would add the rounded product, and lose the sign of a
+// product that rounds to -0. The linker (--wrap) replaces calls of fma with calls of this function.
 extern "C" double __real_fma(double x, double y, double z);
 extern "C" double __wrap_fma(double x, double y, double z) {
   return z == 0 && x != 0 && y != 0 ? x * y : __real_fma(x, y, z);
@@ -36,14 +36,14 @@ extern "C" double __wrap_fma(double x, double y, double z) {
 extern "C" void* __cxa_allocate_exception(std::size_t) { __builtin_trap(); }
 extern "C" void __cxa_throw(void*, void*, void (*)(void*)) { __builtin_trap(); }
 
-// The module needs no system functions of its host. It reads no environment and prints nothing. It links functions for
-// files only because snprintf does.
+// The module needs no system functions of its host. It reads no environment variables and prints nothing. File
+// functions are linked only because snprintf needs them.
 extern "C" char* getenv(const char*) { return nullptr; }
 extern "C" int __imported_wasi_snapshot_preview1_fd_close(int) { __builtin_trap(); }
 extern "C" int __imported_wasi_snapshot_preview1_fd_seek(int, std::int64_t, int, int) { __builtin_trap(); }
 extern "C" int __imported_wasi_snapshot_preview1_fd_write(int, int, int, int) { __builtin_trap(); }
 
-// The module's only thread never ends, so destructors at its end are not called.
+// The module's only thread never ends, so its thread-local destructors are never called.
 extern "C" int __cxa_thread_atexit(void (*)(void*), void*, void*) { return 0; }
 
 namespace graze {

@@ -22,8 +22,8 @@
 namespace graze::wasm {
 namespace {
 
-constexpr std::size_t kRoom = 1024;   // the most pairs in one call
-constexpr std::size_t kText = 65536;  // bytes of the buffer for texts
+constexpr std::size_t kRoom = 1024;   // the largest number of pairs in a call
+constexpr std::size_t kText = 65536;  // size of the text buffer in bytes
 
 #ifdef GRAZE_FLOAT32_ALONE
 using Coordinate = float;
@@ -186,8 +186,8 @@ GRAZE_EXPORT(truth) const TruthOut* truth() {
 // Raises the first coordinate of the first pair by this many ulps.
 GRAZE_EXPORT(nudge) void nudge(int ulps) { nudge_in(pairs_in[0], 0, ulps); }
 
-// Writes the pairs of one row of an ulp map (analysis/ulp_map.h) around the pair in `centre`. From each pair to the
-// next, coordinate x rises by `step` ulps. Coordinate y is `up` ulps above that of the centre.
+// Writes the pairs of one row of an ulp map (analysis/ulp_map.h) around the pair in `centre`. Coordinate x rises by
+// `step` ulps from pair to pair. Coordinate y is `up` ulps above the centre's.
 GRAZE_EXPORT(centre) OwnPair* centre() { return &map_centre; }
 GRAZE_EXPORT(map_row) void map_row(int x, int y, int up, int columns, int step) {
   for (int i = 0; i < columns; ++i) {
@@ -197,9 +197,9 @@ GRAZE_EXPORT(map_row) void map_row(int x, int y, int up, int columns, int step) 
   }
 }
 
-// Computes the steps of the lane on the first pair, which a lane in float rounds to float32: the comparisons, the
-// values passed to the lane's policy, and the same path with 113 bits. Returns: the number of steps; -1 without
-// evidence that they are the lane's own.
+// Computes the steps of the lane on the first pair, which a float lane first rounds to float32: the comparisons, the
+// values passed to the lane's policy, and the same path with 113 bits. Returns: the number of steps, or -1 if there is
+// no evidence that they are the lane's own.
 GRAZE_EXPORT(steps) int steps(int lane) {
   const Lane& of = *deciders()[lane].lane;
   steps_out.clear();
@@ -223,12 +223,12 @@ GRAZE_EXPORT(steps) int steps(int lane) {
 }
 // The evidence that the steps are the lane's own, as in analysis::Evidence.
 GRAZE_EXPORT(evidence) int evidence() { return steps_evidence; }
-// The algorithm's verdict if every operation has 113 bits; its path may differ from the lane's.
+// The algorithm's verdict with 113 bits in every operation; its path may differ from the lane's.
 GRAZE_EXPORT(with_113_bits) int with_113_bits() { return static_cast<int>(verdict_of_quads); }
 GRAZE_EXPORT(steps_at) const StepOut* steps_at() { return steps_out.data(); }
 
-// Finds the contractions because of which the lane's verdict on the first pair differs from that of the same source
-// without contraction; see analysis/blame.h.   Returns: the number of contractions.
+// Finds the contractions that make the lane's verdict on the first pair differ from the same source's verdict without
+// contraction; see analysis/blame.h.   Returns: the number of contractions.
 GRAZE_EXPORT(contractions) int contractions(int lane) {
   sites_out.clear();
   const Lane& of = *deciders()[lane].lane;

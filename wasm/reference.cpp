@@ -62,8 +62,8 @@ Hash truths(const std::vector<OwnPair>& pairs) {
   return hash;
 }
 
-// Hashes one lane's steps, which the viewer explains. Compilers evaluate the arguments of a call in different orders,
-// so the hash does not depend on the order of the steps.
+// Hashes one lane's steps. Compilers evaluate the arguments of a call in different orders, so the hash does not depend
+// on the order of the steps.
 template <class OwnPair>
 Hash steps(const Lane& lane, const std::vector<OwnPair>& pairs) {
   Hash hash;

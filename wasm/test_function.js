@@ -6,7 +6,7 @@
  * @typedef {(a: Float32Array, b: Float32Array) => boolean | number} Overlap
  */
 /**
- * A kind of pairs: pairs that only touch, lie in one plane, have a segment or a point in place of a triangle, or share
+ * A kind of pairs: pairs that only touch, lie in one plane, have a segment or a point instead of a triangle, or share
  * a vertex.
  * @typedef {'touching' | 'coplanar' | 'degenerate' | 'shared'} Kind
  */
@@ -27,7 +27,7 @@
  * @property {number} pairs
  * @property {number} wrong
  * @property {number} declined
- * @property {{ a: number[], b: number[] } | null} smallest a wrong pair, shrunk without a change of truth or answer
+ * @property {{ a: number[], b: number[] } | null} smallest a wrong pair, shrunk without changing truth or answer
  * @property {unknown} thrown the first error that the function threw; each throw is a wrong answer; null: none
  */
 
@@ -78,7 +78,7 @@ function expect_function_and_options(overlap, options) {
 
 /**
  * Draws pairs from the strata, calls the function, and compares its answers with the exact answers. Then it shrinks the
- * simplest wrong pair with at most 50,000 calls, without a change of the true relation or the wrong answer.
+ * simplest wrong pair, with at most 50,000 calls, without changing the true relation or the wrong answer.
  * Throws: RangeError for an option that is not valid, TypeError for an answer that is neither boolean nor number.
  * @param {import('./graze.js').Graze} graze @param {Overlap} overlap
  * @param {TestOptions} [options] @returns {TestResult}
@@ -146,7 +146,7 @@ export function test_function(graze, overlap, options = {}) {
 }
 
 /**
- * The number in an environment variable in Node; without the variable, `otherwise`.
+ * The number in a Node environment variable; `otherwise` if the variable is not set.
  * @param {string} variable @param {number | undefined} otherwise
  */
 function of_environment(variable, otherwise) {
@@ -161,7 +161,7 @@ const list = (nine) => `[${nine.map((x) => (Object.is(x, -0) ? '-0' : String(x))
 
 /**
  * Throws an error with the counts and the smallest wrong pair if the share of wrong answers is above max_wrong. In Node,
- * the environment's GRAZE_PAIRS and GRAZE_SEED replace the options' numbers.
+ * the environment variables GRAZE_PAIRS and GRAZE_SEED override the options' numbers.
  * @param {import('./graze.js').Graze} graze @param {Overlap} overlap
  * @param {TestOptions} [options] @returns {TestResult}
  */

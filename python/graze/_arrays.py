@@ -11,7 +11,7 @@ import numpy as np
 from graze import _library, _program
 
 DISJOINT, INTERSECTS, DECLINED = 0, 1, -1
-CONTACTS = ("none", "point", "segment", "area", "unknown")  # by the number in `contact`
+CONTACTS = ("none", "point", "segment", "area", "unknown")  # indexed by `contact`
 
 _RELATION = np.dtype(
     [(name, np.int8) for name in ("verdict", "contact", "margin_sign", "dimension_a", "dimension_b", "coplanar")]
@@ -19,7 +19,7 @@ _RELATION = np.dtype(
 
 
 class Pair:
-    """Two triangles, made from 18 numbers in a text or an array. `array` holds them as float32, of shape (2, 3, 3). A
+    """Two triangles, made from 18 numbers in a string or an array. `array` holds them as float32, of shape (2, 3, 3). A
     notebook shows the pair in 3-D if the program `graze` is installed.
 
     >>> touching = Pair("0 0 0  1 0 0  0 1 0   0 0 0  0 0 1  0 1 1")
@@ -90,21 +90,21 @@ def _shortest(number: np.float32) -> str:
 
 
 def strata() -> list[str]:
-    """The names of all strata, families of pairs such as "near_edge_edge"."""
+    """The names of all strata (families of pairs), such as "near_edge_edge"."""
     return _library.names("strata")
 
 
 def lanes() -> list[str]:
-    """The names of all lanes that run here, such as "moller_1997/f32/cpu". A policy may follow: "…/cpu/rel:8"."""
+    """The names of all lanes that run here, such as "moller_1997/f32/cpu". A policy may be appended: "…/cpu/rel:8"."""
     return _library.names("lanes")
 
 
 def pairs(strata: str = "*", *, seed: int = 1, count: int = 1000, coordinates: str = "f32") -> np.ndarray:
-    """Draws pairs of the strata, one stratum after another in the order of strata(); the strata share them evenly.
+    """Draws pairs, divided evenly among the strata. They are ordered by stratum, as in strata().
 
-    strata: names with * and ?, separated by commas; "!x" leaves out x. A pair depends only on the seed, its stratum
-    and its index in the stratum, and is the same on every machine. coordinates: "f32", or "f64" for pairs of
-    doubles, which have more strata.
+    strata: names with * and ?, separated by commas; "!x" leaves out x. A pair depends only on the seed, its stratum and
+    its index in the stratum, and is the same on every machine. coordinates: "f32", or "f64" for doubles, for which
+    there are more strata.
     Returns: float32 or float64, shape (count, 2, 3, 3).   Raises: ValueError.
     """
     if coordinates not in ("f32", "f64"):
@@ -123,7 +123,7 @@ def pairs(strata: str = "*", *, seed: int = 1, count: int = 1000, coordinates: s
 
 
 def _of_elements(function: str, array: np.ndarray, result: np.ndarray, *before: Any, after: tuple = ()) -> np.ndarray:
-    """Calls a function of the library on each piece of the array and of the result."""
+    """Calls a library function on each piece of the arrays of elements and results."""
 
     def one(first: int, some: int) -> None:
         arguments = (ctypes.c_uint64(some), _library.pointer(result[first:]))
@@ -154,8 +154,8 @@ def truth(pairs: Any) -> np.ndarray:
 
 
 def margin(pairs: Any) -> np.ndarray:
-    """Certified bounds of each pair's margin: its distance, or minus the shortest translation that separates it.
-    The pairs must be float32.
+    """Certified bounds of each pair's margin: the distance between its triangles, or minus the length of the shortest
+    translation that separates them. The pairs must be float32.
 
     Returns: float64, shape (n, 2): at least, at most. NaN where a coordinate is not finite.
     """
@@ -165,16 +165,16 @@ def margin(pairs: Any) -> np.ndarray:
 
 def verdicts(lane: str, pairs: Any) -> np.ndarray:
     """The lane's verdict on each pair: 1 intersects, 0 disjoint, -1 declined. int8. CUDA lanes run as twins, which
-    replay the kernels on this processor. A float32 lane decides pairs of doubles like a program that stores them in
-    float32: each coordinate is rounded once.
-    Raises: ValueError for a lane that does not exist, and for doubles if a float64 lane reads only float32."""
+    replay the kernels on this processor. A float32 lane decides pairs of doubles as a program that stores them in
+    float32 would: each coordinate is rounded once.
+    Raises: ValueError if there is no such lane, and for doubles if a float64 lane reads only float32."""
     checked = _checked(pairs)
     doubles, name = _library.in_doubles(checked), _library.name_of(lane, "lane")
     return _of_elements("verdicts", checked, np.empty(len(checked), np.int8), name, after=(doubles,))
 
 
 def _triangles(*arrays: Any) -> list[np.ndarray]:
-    """The arrays of triangles. If one of them has doubles, all become doubles, which changes no number."""
+    """Converts the arguments to arrays of triangles. If one has doubles, all become doubles, which is exact."""
     found = [_library.floats(array, (3, 3), "triangles") for array in arrays]
     doubles = any(array.dtype == np.float64 for array in found)
     return [np.ascontiguousarray(array, np.float64) if doubles else array for array in found]
@@ -206,12 +206,12 @@ def _found(a: np.ndarray, b: "np.ndarray | None", touching: bool) -> np.ndarray:
 
 
 def self_intersections(triangles: Any, *, touching: bool = False) -> np.ndarray:
-    """The pairs of triangles of one mesh that pierce each other. Exact. touching: also pairs that only touch, such as
-    neighbours.   Returns: uint32, shape (k, 2), sorted; i < j."""
+    """The index pairs i < j of triangles of one mesh that pierce each other. Exact. touching: include pairs that only
+    touch, such as neighbours.   Returns: uint32, shape (k, 2), sorted."""
     return _found(*_triangles(triangles), None, touching)
 
 
 def intersections(a: Any, b: Any, *, touching: bool = True) -> np.ndarray:
-    """The pairs of a triangle of `a` and one of `b` that intersect. Exact. touching=False: only the pairs that
+    """The index pairs of a triangle of `a` and a triangle of `b` that intersect. Exact. touching=False: only those that
     pierce each other.   Returns: uint32, shape (k, 2), sorted."""
     return _found(*_triangles(a, b), touching)

@@ -10,7 +10,7 @@ from graze import _library
 from graze._arrays import Pair
 from graze._verdict import DECLINED, verdict_of
 
-_RAISED = 3  # as the library numbers verdicts
+_RAISED = 3  # the library's number for an exception
 _EITHER = ("touching", "coplanar", "degenerate", "shared")
 
 
@@ -19,8 +19,8 @@ class _Tested:
 
     def __init__(self, function: Callable[..., Any], name: str, vectorized: bool):
         self.function, self.name, self.vectorized = function, name, vectorized
-        self.ended_by: Optional[BaseException] = None  # what ends the test
-        self.raised: Optional[Exception] = None  # the first exception of the function, which is a wrong answer
+        self.ended_by: Optional[BaseException] = None  # the exception that ends the test
+        self.raised: Optional[Exception] = None  # the function's first exception, a wrong answer
 
     def of_pairs(self, pairs: np.ndarray) -> np.ndarray:
         if not self.vectorized:
@@ -58,7 +58,7 @@ class _Tested:
             pairs.flags.writeable = False
             np.ctypeslib.as_array(verdicts, (count,))[:] = self.of_pairs(pairs)
             return 0
-        except BaseException as failure:  # it cannot pass through the library, and is raised again after the call
+        except BaseException as failure:  # raised again after the call, because it cannot pass through the library
             self.ended_by = failure
             return 1
 
@@ -71,7 +71,7 @@ def _words(pair: Pair, fault: str) -> str:
 
 
 def _check(tested: _Tested, name: str, options: _library.Options, examples: list[Pair]) -> Optional[str]:
-    """Returns: why the function fails; None if it does not."""
+    """Returns: a message if the function fails; otherwise None."""
     for pair in examples:
         verdict = int(tested.of_pairs(pair.array[np.newaxis])[0])
         _library.call("fault", _library.pointer(pair.array), ctypes.c_uint8(verdict), ctypes.byref(options))
@@ -103,14 +103,14 @@ def given(
     either: "str | tuple[str, ...]" = (),
     vectorized: bool = False,
 ) -> Callable[[Callable[..., Any]], Callable[..., None]]:
-    """Makes a test of a function or a method. This takes two triangles, float32 arrays of shape (3, 3), and returns if
-    they intersect; an int below 0 declines. The test draws pairs of the strata and compares the function's answers with
-    the exact ones. If too many are wrong, it fails and shows the smallest wrong pair.
+    """Makes a test of a function or method that takes two triangles, float32 arrays of shape (3, 3), and returns
+    whether they intersect; an int below 0 declines. The test draws pairs of the strata and compares the function's
+    answers with the exact ones. If too many are wrong, it fails and shows the smallest wrong pair.
 
-    max_wrong: the share of wrong answers that is accepted.
+    max_wrong: the accepted share of wrong answers.
     either: kinds of pairs on which both answers are accepted: "touching", "coplanar", "degenerate", "shared".
     vectorized: the function takes arrays of shape (n, 3, 3) and returns n answers.
-    The environment's GRAZE_PAIRS and GRAZE_SEED, or pytest's --graze-pairs and --graze-seed, replace pairs and seed.
+    GRAZE_PAIRS and GRAZE_SEED in the environment, or pytest's --graze-pairs and --graze-seed, override pairs and seed.
 
     >>> @given("uniform", pairs=100)
     ... def test_boxes(a, b):
@@ -135,7 +135,7 @@ def given(
         examples: list[Pair] = list(getattr(function, "_graze_examples", ()))
         name = getattr(function, "__name__", "the function")
 
-        def test(*self: Any) -> None:  # self: a method's object
+        def test(*self: Any) -> None:  # self: the object of a tested method
             __tracebackhide__ = True
             tested = _Tested(functools.partial(function, *self), name, vectorized)
             why = _check(tested, name, options, test._graze_examples)  # type: ignore[attr-defined]
@@ -153,7 +153,7 @@ def given(
 
 
 def example(pair: Any) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Adds a pair that a test made with `given` checks first. The pair is 18 numbers in a text or an array."""
+    """Adds a pair that a test made with `given` checks first: 18 numbers in a string or an array."""
     added = pair if isinstance(pair, Pair) else Pair(pair)
 
     def decorate(function: Callable[..., Any]) -> Callable[..., Any]:

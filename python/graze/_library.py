@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The shared library beside this file, and how arrays and failures pass through it. ctypes releases the interpreter's
-lock during a call."""
+"""Loads the shared library beside this file, and passes arrays and failures through it. ctypes releases the
+interpreter's lock during a call."""
 import contextlib
 import ctypes
 import pathlib
@@ -11,7 +11,7 @@ from typing import Any, Callable, Iterator
 
 import numpy as np
 
-_PIECE = 1 << 18  # elements in a call; Python notices Ctrl+C between calls
+_PIECE = 1 << 18  # elements per call; Python handles Ctrl+C between calls
 
 _library = ctypes.CDLL(str(pathlib.Path(__file__).with_name("libgraze_python.so")))
 for _name in ("error", "strata", "lanes", "text"):
@@ -43,7 +43,7 @@ Decide = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_float), ctypes.c
 
 
 def call(function: str, *arguments: Any) -> None:
-    """Calls graze_py_FUNCTION. Raises ValueError with the library's words, or KeyboardInterrupt if it was stopped."""
+    """Calls graze_py_FUNCTION. Raises ValueError with the library's message, or KeyboardInterrupt if it was stopped."""
     status = getattr(_library, "graze_py_" + function)(*arguments)
     if status == 2:
         raise KeyboardInterrupt
@@ -53,7 +53,8 @@ def call(function: str, *arguments: Any) -> None:
 
 @contextlib.contextmanager
 def failures_on_entering(callback: Callable[..., Any], end: Callable[[BaseException], None]) -> Iterator[None]:
-    """Calls end() with an exception that a signal's handler raises on entering a callback; ctypes only prints it."""
+    """Passes to end() an exception that a signal handler raises on entry to the callback. ctypes would only print
+    it."""
     before = sys.unraisablehook
 
     def hook(unraisable: Any) -> None:
@@ -70,9 +71,9 @@ def failures_on_entering(callback: Callable[..., Any], end: Callable[[BaseExcept
 
 
 def call_in_thread(function: str, *arguments: Any, then: Callable[[], None]) -> None:
-    """Like call, but for a long call, in a thread of its own. Its last argument is a flag that asks it to stop. Ctrl+C
-    stops the call, and is then raised. `then` runs in the same thread after the call, because the library keeps the
-    result for that thread."""
+    """Runs a long call in a separate thread. The function's last argument is a flag that asks it to stop. Ctrl+C sets
+    the flag and is raised after the call. `then` runs in the same thread after the call, because the library keeps each
+    thread's result separately."""
     stop = ctypes.c_int(0)
     failures: list[BaseException] = []
 
@@ -89,7 +90,7 @@ def call_in_thread(function: str, *arguments: Any, then: Callable[[], None]) -> 
         while thread.is_alive():
             thread.join(0.1)
     except BaseException:
-        while thread in threading.enumerate():  # also a thread that is only about to start
+        while thread in threading.enumerate():  # true even before the thread has started
             stop.value = 1
             time.sleep(0.01)
         raise
@@ -110,7 +111,7 @@ def text() -> str:
 
 
 def pointer(array: np.ndarray) -> ctypes.c_void_p:
-    """The address of the array's numbers, which keeps the array alive."""
+    """A pointer to the array's numbers; it keeps the array alive."""
     return array.ctypes.data_as(ctypes.c_void_p)
 
 
@@ -132,18 +133,16 @@ def _masked(array: Any) -> int:
 
 
 def unmasked(array: Any, what: str) -> np.ndarray:
-    """The array without a mask. Raises ValueError for masked values, because NumPy would use the hidden values."""
+    """The array without its mask. Raises ValueError for masked values, because NumPy would use the hidden values."""
     if masked := _masked(array):
-        raise ValueError(
-            f"{what}: masked values ({masked}) are refused; fill them (x.filled) or leave out what they belong to"
-        )
+        raise ValueError(f"{what}: masked values ({masked}) are refused; fill them (x.filled) or remove their elements")
     return np.asarray(array)
 
 
 def floats(array: Any, shape: tuple[int, ...], what: str, doubles: bool = True) -> np.ndarray:
-    """The array as a contiguous one of shape (n, *shape); a single element may lack the first axis. The type is
-    float32, or with `doubles` also float64. Makes no copy of an array that is contiguous already. Raises TypeError for
-    other types, whose numbers would have to be rounded, and ValueError for another shape or masked values."""
+    """Makes a contiguous array of shape (n, *shape); a single element may lack the first axis. The type must be
+    float32, or with `doubles` also float64. Does not copy an array that is contiguous already. Raises TypeError for
+    other types, which would need rounding, and ValueError for another shape or for masked values."""
     found = unmasked(array, what)
     if found.dtype != np.float32 and not (doubles and found.dtype == np.float64):
         raise TypeError(
@@ -158,7 +157,7 @@ def floats(array: Any, shape: tuple[int, ...], what: str, doubles: bool = True) 
 
 
 def count_of(number: Any, what: str) -> int:
-    """The number as a whole number of 64 bits. Raises ValueError if it is none."""
+    """Checks that the number is a whole number of 64 bits. Raises ValueError if it is not."""
     try:
         whole = int(number)
         if whole == number and not isinstance(number, (bool, str)) and 0 <= whole < 1 << 64:
@@ -169,7 +168,7 @@ def count_of(number: Any, what: str) -> int:
 
 
 def name_of(name: Any, what: str) -> bytes:
-    """The name as bytes for the library. Raises TypeError if it is not a text."""
+    """The name as bytes for the library. Raises TypeError if it is not a string."""
     if not isinstance(name, str) or "\0" in name:
-        raise TypeError(f"{what}: a text is needed, not {name!r}")
+        raise TypeError(f"{what}: a string is needed, not {name!r}")
     return name.encode()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Calls the program `graze` for campaigns and drawings, which the library does not have."""
+"""Calls the program `graze` for campaigns and drawings, which are not in the library."""
 import json
 import os
 import pathlib
@@ -10,7 +10,7 @@ from typing import Any
 
 
 def program() -> str:
-    """The program's path: the environment's GRAZE, or `graze` on the PATH. Raises FileNotFoundError."""
+    """The program's path: the environment variable GRAZE, or `graze` on the PATH. Raises FileNotFoundError."""
     found = os.environ.get("GRAZE") or shutil.which("graze")
     if not found:
         raise FileNotFoundError("there is no program `graze` on the PATH; install Graze, or set GRAZE to its path")
@@ -28,7 +28,7 @@ def run(*arguments: str) -> str:
 
 def campaign(out: "str | os.PathLike[str]", **options: Any) -> dict[str, Any]:
     """Runs `graze fuzz --out OUT` with these options, such as pairs=10_000, lanes="*/f32/cpu", subject="own=own.cpp:f".
-    A list gives an option several times; True gives it without a value.
+    A list repeats an option; True passes the option without a value.
 
     Returns: the campaign's summary.json, whose keys docs/formats.md lists.
     Raises: FileNotFoundError if there is no program; RuntimeError with the program's message if it fails.
@@ -42,7 +42,7 @@ def campaign(out: "str | os.PathLike[str]", **options: Any) -> dict[str, Any]:
 
 
 def viewer_page(numbers: str) -> str:
-    """The page that `graze view` writes for a pair, 18 numbers.   Raises: like campaign."""
+    """The page that `graze view` writes for a pair of 18 numbers.   Raises: as campaign does."""
     with tempfile.TemporaryDirectory() as folder:
         file, page = os.path.join(folder, "pair.txt"), os.path.join(folder, "view.html")
         pathlib.Path(file).write_text(numbers + "\n", encoding="utf-8")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The plug-in for pytest. Its options set the number of pairs and the seed of tests with graze.given, such as for a
-nightly run. The report of a failure leaves out the lines of graze itself."""
+"""The plug-in for pytest. Its options set the number of pairs and the seed of tests with graze.given, for example in a
+nightly run. A failure is reported without a traceback if the message says everything."""
 import os
 from typing import Any, Generator
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests the package as it will be installed: its doctests and test_*.py here. Tests the plug-in if Debian's
-python3-pytest is installed, and the wheel if python3-build, python3-setuptools and python3-wheel are installed.
-  run.py FOLDER GRAZE     FOLDER: has the package; GRAZE: the program
+"""Runs the doctests and test_*.py on the package as it will be installed. Tests the plug-in if Debian's python3-pytest
+is installed, and the wheel if python3-build, python3-setuptools and python3-wheel are installed.
+  run.py FOLDER GRAZE     FOLDER: contains the package; GRAZE: the program
 """
 import doctest
 import importlib.util

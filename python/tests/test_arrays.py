@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compares arrays with the program `graze` and with fractions, and tests wrong arguments."""
+"""Compares the array functions with the program `graze` and with fractions, and tests invalid arguments."""
 import csv
 import os
 import pathlib
@@ -107,7 +107,7 @@ class Arrays(unittest.TestCase):
             graze._library._PIECE = piece
 
     def test_truth_is_that_of_fractions(self):
-        """The triangles have small integers. Compares the truth with linear programming in fractions."""
+        """Compares the truth with linear programming in fractions, on triangles with small integer coordinates."""
         drawn = graze.pairs("lattice,coplanar_lattice,degenerate", count=600)
         said = graze.truth(drawn)
         self.assertTrue(0 < said.sum() < 600)
@@ -116,7 +116,7 @@ class Arrays(unittest.TestCase):
 
     def test_text_is_rounded_once(self):
         middle, beyond = "1.00000005960464477539062500000", "1.00000005960464477539062500001"  # 1 + 2^-24, half an ulp
-        smallest = "0." + str(5**150).zfill(150)  # 2^-150, half the smallest
+        smallest = "0." + str(5**150).zfill(150)  # 2^-150, half the smallest float32
         words = [
             middle,
             beyond,
@@ -335,8 +335,8 @@ def intersect(pair):
 
 
 def holds_origin(points):
-    """Whether the hull of the points holds 0. It does not if all points lie strictly on one side of a plane through 0.
-    If all lie on one side and some in the plane, the points in the plane decide, in one dimension less."""
+    """Whether the hull of the points contains 0. It does not if all points lie strictly on one side of a plane through
+    0. If all points lie on one side or in the plane, those in the plane decide, in one dimension less."""
     points = list(dict.fromkeys(points))
     if any(all(x == 0 for x in p) for p in points):
         return True
@@ -369,7 +369,7 @@ def normals(points):
 
 
 def flattened(points, normal):
-    """The points of a plane without one of their coordinates, in which the plane's normal is not 0."""
+    """Projects points of a plane: drops a coordinate in which the plane's normal is not 0."""
     drop = next(k for k, n in enumerate(normal) if n)
     return [p[:drop] + p[drop + 1 :] for p in points]
 

@@ -8,7 +8,7 @@ import { defineConfig } from '@playwright/test';
 
 const chromium = process.env.GRAZE_CHROMIUM ?? execSync('command -v chromium', { encoding: 'utf8' }).trim();
 
-// Chromium runs without its sandbox, because root in a container cannot have one.
+// Chromium runs without its sandbox, which does not work for root in a container.
 const launched = (...args) => ({ executablePath: chromium, args: ['--no-sandbox', ...args] });
 
 export default defineConfig({
@@ -20,7 +20,7 @@ export default defineConfig({
   timeout: 300_000,
   expect: { timeout: 60_000 },
   reporter: 'list',
-  // An emulated GPU takes most of the processor time, so only the tests of WebGL have one.
+  // An emulated GPU takes most of the processor time, so only the WebGL tests use one.
   projects: [
     { name: 'plain', grepInvert: /by WebGL/, use: { launchOptions: launched('--disable-gpu') } },
     {
@@ -30,8 +30,8 @@ export default defineConfig({
     },
   ],
   use: {
-    // The window is low, because painting takes most of the processor time: parts out of view are not painted, and
-    // their maps are not computed.
+    // The window is low because painting takes most of the processor time: parts outside it are not painted, and their
+    // maps are not computed.
     viewport: { width: 1360, height: 480 },
     contextOptions: { permissions: ['clipboard-read', 'clipboard-write'] },
   },

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bundles the page into one file, without chunks, style sheets or pictures beside it, so that it opens from disk. The
-// report is index.html; with --mode viewer, the page is view.html. GRAZE_VIEWER is set if there is a viewer, which
-// quotes source lines. graze writes the viewer's module into the page with the other data.
+// Bundles the page into one file, with all chunks, style sheets and pictures, so it can be opened from disk. The report
+// is index.html; with --mode viewer, the page is view.html. GRAZE_VIEWER is set if there is a viewer, which quotes
+// source lines. graze writes the viewer's module into the page with the other data.
 import { readFileSync, readdirSync } from 'node:fs';
 import { defineConfig } from 'vite';
 import { viteSingleFile } from 'vite-plugin-singlefile';
 
-// The source lines at which lanes take their steps, by file. Without a viewer, none are needed.
+// The source lines at which lanes take their steps, by file. Empty if there is no viewer.
 function source_lines() {
   const root = process.env.GRAZE_SOURCE;
   if (!process.env.GRAZE_VIEWER) return {};

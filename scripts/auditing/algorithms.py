@@ -44,12 +44,12 @@ Seen = collections.namedtuple("Seen", "line left relation right held")
 
 
 class Run:
-    """A run of an algorithm in one kind of number, forced along a path: its comparisons and its verdict."""
+    """A run of an algorithm with one number type, forced along a path: its comparisons and its verdict."""
 
     def __init__(self, name, kind, coordinates, lead=(), rule="none"):
         self.rule, self.uses, self.known_uses = rule, [], []
         self._decide(name, kind, coordinates, lead)
-        if rule != "none":  # the number of uses of a product is known only after a whole run
+        if rule != "none":  # how often a product is used is known only after a whole run
             self.known_uses, self.uses = self.uses, []
             self._decide(name, kind, coordinates, lead)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Number types for the algorithms: exact, with any mantissa size, and with products fused into additions."""
+"""Number types for the algorithms: exact, of any mantissa size, or with products fused into additions."""
 import math
 import operator
 from fractions import Fraction
@@ -36,7 +36,7 @@ class Root:
 
     def __truediv__(self, o):
         if self.p is None or o.p is None or not (o.p or o.q):
-            return Root(None)  # the only division by zero in the algorithms is 0 by 0
+            return Root(None)  # the algorithms divide by zero only in 0 / 0
         norm = o.p * o.p - o.q * o.q * o.m
         return self * Root(Fraction(o.p) / norm, Fraction(-o.q) / norm, o.m)
 
@@ -60,7 +60,7 @@ class Root:
         return sp * ((square > 0) - (square < 0))
 
     def number(self):
-        """The number as a Fraction, with a relative error of at most 2^-100."""
+        """The number as a Fraction with a relative error of at most 2^-100."""
         if not self.q:
             return Fraction(self.p)
         bits = 200
@@ -168,7 +168,7 @@ def fma(a, b, c):
     (na, da), (nb, db), (nc, dc) = (float(x).as_integer_ratio() for x in (a, b, c))
     top, bottom = na * nb * dc + nc * da * db, da * db * dc
     try:
-        value = top / bottom  # Python rounds a quotient of integers only once
+        value = top / bottom  # Python rounds the quotient of two integers only once
     except OverflowError:
         value = math.inf if top > 0 else -math.inf
     if isinstance(a, np.float32) and math.isfinite(value):  # rounds to odd, so that the second rounding is harmless
@@ -179,7 +179,7 @@ def fma(a, b, c):
 
 
 class Fused:
-    """A number of a contracting lane. If it is a product, it stores the factors."""
+    """A number of a contracting lane. A product also stores its factors."""
 
     __slots__ = ("v", "run", "x", "y", "product", "quotient", "scaled")
 

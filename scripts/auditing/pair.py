@@ -17,7 +17,7 @@ class Audited:
         self.floats = coordinates
         self.fractions = [Fraction(c) for c in coordinates]
         k = max(f.denominator for f in self.fractions)
-        self.integers = [int(f * k) for f in self.fractions]  # every comparison is between numbers of the same degree
+        self.integers = [int(f * k) for f in self.fractions]  # compared numbers have the same degree in k
         self.runs, self.outcomes, self.sets = {}, {}, {}
         self.contact, self.distance_squared, corners = contact_and_distance(self.fractions)
         self.inside = inside(self.fractions, self.contact, corners)
@@ -45,7 +45,7 @@ class Audited:
         return Run(name, lambda x: Root(Fraction(x)), self.fractions, path).seen
 
     def sized(self, name, scalar, bits=None, upper=False, lower=False, rule="none", lead=()):
-        """A run with a mantissa of `bits` bits, and with or without the scalar's exponent limits."""
+        """A run with a mantissa of `bits` bits, with or without the scalar's exponent limits."""
         single = scalar == "f32"
 
         class Sized(Real):
@@ -57,8 +57,8 @@ class Audited:
         return Run(name, lambda x: Sized.made(Fraction(x)), self.fractions, lead, rule)
 
     def deciding(self, name, scalar, rule):
-        """The first of the smallest sets of comparisons whose correction gives the truth: the number of each comparison,
-        and the path that leads to it. None if such a set has more than MOST_DECIDING comparisons."""
+        """The first of the smallest sets of comparisons whose correction gives the truth: the comparisons' numbers, and
+        the path to each. None if such a set has more than MOST_DECIDING comparisons."""
         key = name, scalar, rule
         if key not in self.sets:
             for size in range(1, MOST_DECIDING + 1):
@@ -69,7 +69,7 @@ class Audited:
         return self.sets[key]
 
     def _with(self, name, scalar, rule, lead, begin, more):
-        """Searches depth first for `more` further comparisons, starting at `begin`, the earliest first."""
+        """Searches depth first for `more` further comparisons from `begin` on, the earliest first."""
         path = self.run(name, scalar, rule, lead).path()
         exact = self.exact_outcomes(name, path)
         for i in range(begin, len(path)):
@@ -152,8 +152,8 @@ def contact_and_distance(c):
 
 
 def inside(c, contact, corners):
-    """The words for a triangle that lies in the other; '' if neither does. A triangle lies in the other if all its
-    ends in the other's plane are corners of the common set."""
+    """The words for a triangle that lies in the other; '' if neither does. A triangle lies in the other if all of its
+    ends that are in the other's plane are corners of the common set."""
     v = [c[i : i + 3] for i in range(0, 18, 3)]
     triangles = {"a": v[:3], "b": v[3:]}
     normals = {name: cross(sub(t[1], t[0]), sub(t[2], t[0])) for name, t in triangles.items()}

@@ -95,7 +95,7 @@ def check_lane(pair, lane, counts):
 
 
 def by_cause(pair, name, scalar, rule, cause, i, path):
-    """Whether the comparison is right without the cause, or compares a value that is not finite."""
+    """Whether the comparison, without the cause, is right or compares a value that is not finite."""
     seen = pair.run(name, scalar, rule, path[:i]).seen[i]
     finite = all(math.isfinite(value_of(x)) for x in (seen.left, seen.right))
     if cause == "rounding" or not finite:

@@ -16,13 +16,13 @@ import threading
 from mutating import tokens
 
 NOT_SWITCHED = 98  # exit status, as in switches.h
-# A subscript out of range ends the test, which might otherwise read any value.
+# A subscript out of range ends the test. Otherwise it might read any value.
 CHECKED = ["-w", "-D_GLIBCXX_ASSERTIONS", "-fsanitize=bounds-strict,object-size", "-fsanitize-undefined-trap-on-error"]
 MEMORY = 8 << 30  # bytes of address space for each compiler and test
 
 
 class Refused(Exception):
-    """The tests cannot judge a mutant, because they fail without one."""
+    """The tests cannot judge a mutant, because they fail even without one."""
 
 
 class NotCompiled(Exception):
@@ -30,7 +30,7 @@ class NotCompiled(Exception):
 
 
 class Commands:
-    """The finished build's compile and link commands, made faster: no optimisation, precompiled system headers, lld."""
+    """The finished build's compile and link commands, made faster: not optimised, precompiled system headers, lld."""
 
     def __init__(self, root, build, programs, out):
         self.root, self.build, self.out = root, build, out
@@ -53,7 +53,7 @@ class Commands:
         words = shlex.split(self.compile[str(self.root / source)])
         cache = [k for k, word in enumerate(words) if pathlib.Path(word).name == "ccache"]
         words = words[cache[0] + 1 if cache else 0 :]
-        for flag in ["-MF", "-MT", "-o", "-c", "-include"]:  # -include: a precompiled header for other flags
+        for flag in ["-MF", "-MT", "-o", "-c", "-include"]:  # -include: a precompiled header made with other flags
             if flag in words:
                 del words[words.index(flag) : words.index(flag) + 2]
         return [
@@ -69,7 +69,7 @@ class Commands:
 
     def precompiled(self, source, words):
         """A precompiled header of everything that the source and our headers include in angle brackets, compiled once
-        for all mutants. Leaves out Highway's headers, which are included once for each instruction set."""
+        for all mutants. Omits Highway's headers, which are included once for each instruction set."""
         with self.lock:
             said = subprocess.run(
                 [*words, "-E", "-dI", str(self.root / source)],
@@ -81,7 +81,7 @@ class Commands:
             names, ours = set(), True
             for line in said.splitlines():
                 if place := re.match(r'# \d+ "[^"]*"((?: \d)*)$', line):
-                    ours = " 3" not in place.group(1)  # 3: a header of the system
+                    ours = " 3" not in place.group(1)  # 3: a system header
                 elif ours and (name := re.match(r"#\s*include\s*(<(?!hwy/)[^>]+>)", line)):
                     names.add(f"#include {name.group(1)}\n")
             text = "".join(sorted(names))
@@ -97,7 +97,7 @@ class Commands:
         return ["-include", str(header)]
 
     def linked(self, program, objects, out):
-        """The command that links the program with these objects in place of its tests' objects."""
+        """The command that links the program with these objects instead of its tests' objects."""
         words = shlex.split(self.link[program])
         words = [word for word in words if not word.endswith(".test.cpp.o") and "/Unity/" not in word]
         at = words.index("-o")
@@ -126,17 +126,17 @@ class Runner:
         self.seconds = json.loads(self.kept.read_text(encoding="utf-8")) if self.kept.exists() else {}
 
     def sources_seeing(self, group, file):
-        """The sources to compile again: the file itself, or for a header the sources that the group names, by default
-        its tests."""
+        """The sources to recompile: the file itself or, for a header, the sources that the group names (by default its
+        tests)."""
         if file.endswith(".cpp"):
             return [file]
         rows = [row for row in group.get("header", []) if row["file"] == file]
         return next(iter(rows), group).get("seen_by", group["tests"])
 
     def stages(self, group, seeing):
-        """The tests in the order in which they run. First come all tests that need no compilation, together, if they
-        can see the mutant at all. Then the tests that are compiled again, one by one, because most mutants die in the
-        first."""
+        """The tests in the order in which they run. First, together, come all tests that need no compilation, if they
+        can see the mutant at all. Then the recompiled tests run one by one, because the first one kills most
+        mutants."""
         anew = [
             source
             for source in dict.fromkeys([*group["tests"], *seeing])
@@ -147,7 +147,7 @@ class Runner:
 
     def run(self, command, seconds=600, env=None):
         """Returns: the exit status, the output, and the CPU seconds used. The status is None if the command used
-        `seconds` of CPU time or ran ten times as long."""
+        `seconds` of CPU time, or took ten times as long."""
         limited = ["prlimit", f"--cpu={math.ceil(seconds)}", f"--as={MEMORY}", *command]
         with tempfile.TemporaryFile() as said:
             process = subprocess.Popen(
@@ -205,7 +205,7 @@ class Runner:
         return used
 
     def limit(self, group, stage, anew):
-        """Five times the CPU seconds of a stage without a mutant, plus some margin. Without a mutant the tests must
+        """Five times the CPU seconds of a stage without a mutant, plus some margin. Without a mutant, the tests must
         pass."""
         key = " ".join([group["name"], *stage, *anew])
         with self.lock:
@@ -240,7 +240,7 @@ class Runner:
         return self.test_what_it_writes(group, mutated, folder) if "writes" in group else ("survived", "")
 
     def test_what_it_writes(self, group, mutated, folder, env=None):
-        """For a generator: runs its program to write sources. If a source differs from the build's, runs that source's
+        """For a generator: runs its program, which writes sources. If one differs from the build's, runs that source's
         test."""
         writer = self.link(group["writes"]["program"], mutated, folder / "writer")
         for source, flag, written, test in group["writes"]["runs"]:
@@ -263,7 +263,7 @@ class Runner:
         return "survived", ""
 
     def compile_switched(self, group, file, source, text, numbered, folder):
-        """Removes from `numbered` the mutants that the compiler rejects, or whose lines it rejects.   Throws:
+        """Removes from `numbered` the mutants, or all mutants of the lines, that the compiler rejects.   Throws:
         NotCompiled."""
         while True:
             (folder / file).write_text(tokens.switched(text, numbered), encoding="utf-8")
@@ -285,8 +285,8 @@ class Runner:
                     del numbered[number]
 
     def test_together(self, mutants, folder, done):
-        """Tests the mutants of one file with one build, each switched on in turn. Calls done with each result.
-        Returns: the mutants that need a separate build.   Throws: NotCompiled; Refused."""
+        """Tests the mutants of one file in one build, each switched on in turn. Calls done with each result.   Returns:
+        the mutants that need a separate build.   Throws: NotCompiled; Refused."""
         group, file = self.groups[mutants[0]["group"]], mutants[0]["file"]
         text = (self.root / file).read_text(encoding="utf-8")
         numbered = {number: mutant for number, mutant in enumerate(mutants) if tokens.switch_of(mutant, number, text)}

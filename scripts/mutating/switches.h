@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // For scripts/mutate: one program with many mutants of a source. The environment variable GRAZE_MUTANT selects one by
-// its number. A switch is placed beside a token such that precedence stays the same: `a < b` becomes
-// `a < graze_mutant::Switch<7>{} < b`. In constant expressions every mutant is off.
+// its number. A switch is inserted beside a token such that precedence does not change: `a < b` becomes `a <
+// graze_mutant::Switch<7>{} < b`. In constant expressions, every mutant is off.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace graze_mutant {
 
-constexpr int kNotSwitched = 98;  // exit status: the selected mutant does not compile with a switch; build it by itself
+constexpr int kNotSwitched = 98;  // exit status: the chosen mutant does not compile with a switch; build it separately
 
 struct Asked {
   bool of[8192] = {};
@@ -27,7 +27,7 @@ struct Asked {
   }
 };
 inline Asked asked;  // initialised before everything in the source, because this header comes first
-// Inlined in unoptimised code too, because switches are in the innermost loops.
+// Always inlined, even in unoptimised code, because switches are in the innermost loops.
 #define GRAZE_INLINE [[gnu::always_inline]]
 GRAZE_INLINE inline bool is_chosen(int id) {
   asked.of[id] = true;
@@ -90,7 +90,7 @@ GRAZE_ASSIGNMENT(-=, +=)
 GRAZE_ASSIGNMENT(&=, |=)
 GRAZE_ASSIGNMENT(|=, &=)
 
-// Switches before a unary operator. ->* binds to the operator's result more tightly than the other binary operators.
+// Switches before a unary operator. ->* binds the operator's result more tightly than the other binary operators do.
 template <int id>
 struct Not {};
 template <int id>

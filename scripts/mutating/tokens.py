@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The mutants of a source: its replaceable tokens, each replaced alone or all behind switches (switches.h)."""
+"""The mutants of a source: its replaceable tokens, replaced one at a time or all behind switches (switches.h)."""
 import re
 
 SWAPPED = ("< <=", "> >=", "== !=", "&& ||", "+ -", "& |", "<< >>", "+= -=", "&= |=", "++ --", "true false", "min max")
 SWAPS = {"*": "+", "continue": "break"}
 SWAPS |= {old: new for pair in map(str.split, SWAPPED) for old, new in (pair, pair[::-1])}
-# A token, identified by its surroundings: clang-format puts spaces around binary operators, but not inside a template's
-# <…>.
+# A token, identified by its surroundings: clang-format puts spaces around binary operators, but not inside the <…> of a
+# template.
 TOKEN = re.compile(
     r"""
     (?<=\ )(?:<=|>=|==|!=|&&|\|\||\+=|-=|&=|\|=|<<|>>|<|>|\+|-|\*|&|\|)(?=\ )   # binary
@@ -43,7 +43,7 @@ def mutants_of(root, group, file):
     text = (root / file).read_text(encoding="utf-8")
     result, offset = [], 0
     for number, (line, blank) in enumerate(zip(text.split("\n"), blanked(text).split("\n")), 1):
-        # A mutated constant array size would not compile. No other declaration is treated specially.
+        # A mutated constant array size would not compile. All other declarations are mutated.
         if not SKIPPED.search(blank):
             for found in TOKEN.finditer(blank):
                 new = replacement(found.group(), blank[: found.start()])

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Figures as SVG, with labels beside what they name. A figure is 380 units wide, so that its text is about 12 px high
-on a phone of 390 px. It has its own background, and colours for light and dark."""
+"""Figures as SVG, with labels beside what they name. A figure is 380 units wide, so its text is about 12 px high on a
+phone of 390 px. It has its own background, and colours for light and dark mode."""
 import math
 from html import escape
 
@@ -47,7 +47,8 @@ def svg(height, alt, parts):
 
 
 def bars(alt, unit, rows):
-    """rows: (label, value, its text, class). The label is above its bar, the text to its right. unit: of the axis."""
+    """rows: (label, value, its text, class). The label is above its bar, the text to its right. unit: the axis's
+    unit."""
     room = max(len(plain(words)) for _, _, words, _ in rows) * 7.6 + 8
     most = max(value for _, value, _, _ in rows)
     scale = (WIDTH - LEFT - RIGHT - room) / most
@@ -61,7 +62,7 @@ def bars(alt, unit, rows):
 
 
 def dots(alt, unit, rows, decades):
-    """Dots on a logarithmic axis. rows: (label, value above 0, its text, class); decades: exponents of the axis."""
+    """Dots on a logarithmic axis. rows: (label, value above 0, its text, class); decades: the axis's exponents."""
     first, last = decades
     at = lambda value: LEFT + 4 + (math.log10(value) - first) / (last - first) * (WIDTH - LEFT - RIGHT - 60)
     bottom, parts = 14 + 38 * len(rows), []
@@ -78,7 +79,7 @@ def dots(alt, unit, rows, decades):
 
 
 def ratios(alt, unit, rows):
-    """Dots around 1 on a logarithmic axis from 1/2 to 8, one line a row. rows: (label, value, its text, class)."""
+    """Dots around 1 on a logarithmic axis from 1/2 to 8, one line per row. rows: (label, value, its text, class)."""
     at = lambda value: 162 + (math.log2(value) + 1) / 4 * (WIDTH - RIGHT - 70 - 162)
     bottom, parts = 12 + 22 * len(rows), []
     for tick in (0.5, 1, 2, 4, 8):
@@ -93,8 +94,8 @@ def ratios(alt, unit, rows):
 
 
 def curves(alt, x_name, y_name, ticks, lines):
-    """Curves over a logarithmic axis. lines: (label, class, points (log2, percent),
-    the log2 at which the label is, 1 if it is below the curve or -1 if above). ticks: their log2."""
+    """Curves over a logarithmic axis. lines: (label, class, points (log2, percent), the log2 at which the label is, 1
+    if it is below the curve or -1 if above). ticks: their log2."""
     left, top, right, bottom = 44, 34, WIDTH - 26, 268
     low, high = ticks[0], ticks[-1]
     most = 5 * math.ceil(max(y for _, _, points, _, _ in lines for _, y in points) / 5)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Results about verdicts that change when a test's input is stored in float32."""
+"""Results about verdicts that change because a test's input is stored in float32."""
 from presenting.figures import bars
 from presenting.records import count, percent, require
 from presenting.result import Result

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Results about tests: what they cost, how often they err, and what an epsilon does."""
+"""Results about tests: their costs, their error rates, and the effect of an epsilon."""
 import math
 import re
 

@@ -64,7 +64,7 @@ def section(result):
 
 
 def files(results):
-    """Returns: the text of each file of docs/results that is written."""
+    """Returns: the text of each generated file of docs/results."""
     page = HEAD + "".join(section(result) for result in results) + TAIL
     return {"README.md": page} | {f"{result.name}.svg": result.figure for result in results}
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers for docs/results, from the records in docs/measurements. Each text that this module returns for a number
-carries marks around it, so that `unbacked` finds numbers without a record."""
+"""Numbers for docs/results, from the records in docs/measurements. This module puts marks around each number that it
+returns as text, so that `unbacked` finds numbers without a record."""
 import decimal
 import math
 import re
@@ -9,7 +9,7 @@ import measurements
 from verdicts_apart import wilson
 
 BEGIN, END = "\x02", "\x03"
-# Digits and words that are no measured numbers: names, definitions, and the confidence of every interval.
+# Digits and words that are not measured numbers: names, definitions, and the confidence of every interval.
 NAMES = re.compile(
     r"float(32|64)|2012|ARM64|x86-64|x87|95 %|H[12]00|Debian 12|C\+\+|2\^12 ulps|ulps?\b|3-D|GTX 590|8800 GT"
     r"|one rounding|one core|one pair|moller_1997|guigue_devillers_2003|Open3D|3d"
@@ -24,8 +24,8 @@ class Unsupported(Exception):
 
 
 class Records:
-    """The newest record of each metric. `used` has the records that were asked for, `values` the values. A test may put
-    other values into `changed`, by topic, metric and key."""
+    """The newest record of each metric. `used` has the requested records, `values` their values. A test may replace
+    values through `changed`, by topic, metric and key."""
 
     def __init__(self, folder=measurements.RECORDS):
         machines, topics = measurements.read(folder)
@@ -58,7 +58,7 @@ def plain(text):
 
 
 def unbacked(text):
-    """Returns: the numbers of a marked text that no record backs; code and the targets of links do not count."""
+    """Returns: the numbers of a marked text without a record; code and link targets do not count."""
     text = re.sub(f"{BEGIN}[^{END}]*{END}", " ", text)
     text = re.sub(r"`[^`]*`|\]\([^)]*\)", " ", text)
     return [found.group() for found in NUMBER.finditer(NAMES.sub(" ", text))]
@@ -92,7 +92,7 @@ def one_in(x, of=1):
 
 
 def times(x, towards=None):
-    """A factor, with two digits if it is a bound, and otherwise with three."""
+    """A factor, with two digits if it is a bound, otherwise with three."""
     return backed(f"{digits(float(x), 2 if towards else 3, towards)} times")
 
 
@@ -126,7 +126,7 @@ def at_most_percent(of):
 
 
 def within_points(*shares):
-    """The widest half of the 95 % intervals of (x, of), in percentage points, rounded outward."""
+    """The largest half-width of the 95 % intervals of (x, of), in percentage points, rounded outward."""
     halves = [(high - low) / 2 for low, high in (wilson(x, of) for x, of in shares)]
     return backed(f"{digits(100 * max(halves), 1, math.ceil)} percentage points")
 

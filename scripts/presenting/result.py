@@ -8,12 +8,12 @@ ALGORITHMS = ("projected_sat", "interval_overlap", "moller_1997", "guigue_devill
 
 @dataclasses.dataclass
 class Result:
-    name: str  # of its figure, and of its place on a page
+    name: str  # names its figure, and its section on a page
     headline: str
     paragraph: str
     figure: str
     alt: str
-    records: dict = dataclasses.field(default_factory=dict)  # those that it uses, by topic and metric
+    records: dict = dataclasses.field(default_factory=dict)  # the records that it uses, by topic and metric
     main: tuple = ()  # the topic and metric whose command reproduces the headline
 
 

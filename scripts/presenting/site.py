@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The results as a web site: one page with the figures inside, and one page of the viewer. Both fetch nothing."""
+"""The results as a web site: one page that contains the figures, and one page of the viewer. Both fetch nothing."""
 import posixpath
 import re
 import struct
@@ -13,10 +13,10 @@ from presenting.records import plain
 
 
 class NoViewer(Exception):
-    """graze cannot write a page of the viewer."""
+    """graze cannot write a viewer page."""
 
 
-# Pairs to look at. For each result: the pair, the lane that the viewer shows first, and what the reader sees there.
+# Pairs for the viewer. For each result: the pair, the lane that is shown first, and what the reader sees there.
 PAIRS = {
     "riddle": (
         "0x1p+1 -0x1p+1 0x1p+2 0x1p+0 0x1.4p+2 -0x1p+1 0x1p+0 -0x1.8p+1 -0x1.8p+1 -0x1.99998p-4 0x1.133334p+2 "
@@ -68,7 +68,7 @@ for (const details of document.querySelectorAll('details')) {
 
 
 def named(link):
-    """The text and the path of a link to a file of the repository, which the site does not have."""
+    """The text and the path of a link to a file of the repository that the site lacks."""
     words, path = link[1], posixpath.normpath(f"docs/results/{link[2]}")
     return f"`{path}`" if words == path else f"{words} (`{path}`)"
 

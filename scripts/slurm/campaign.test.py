@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs campaign.sbatch on a Slurm of one node, which it starts and stops: an array of shards, one of them requeued while
-it runs, and the merge, which depends on them. The result is that of one run of the whole.
+"""Runs campaign.sbatch on a Slurm of one node, which it starts and stops: an array of shards, one of them requeued
+while it runs, and the dependent merge. The result must be that of a single run.
   campaign.test.py GRAZE [--pairs N] [--shards N]
 Exits with 77, which skips the test, if Slurm or munge is not installed, or if only root may start them.
 """
@@ -119,7 +119,7 @@ def run(slurm, root, graze, pairs, shards):
     )
     print(f"shard 1 requeued while it ran: {requeued}")
     print(slurm("squeue", "--array"), end="")
-    # A requeued job normally waits two minutes; this releases it at once.
+    # A requeued job normally waits two minutes; this releases it immediately.
     seen = ""
     while state := slurm("squeue", "-h", "-o", "%i %T %r"):
         if state != seen:

@@ -12,15 +12,15 @@ import signal
 import subprocess
 import time
 
-MEMORY_MIB = 1024  # address space; not applied to builds with a sanitizer, which need far more
-PROCESSOR_SECONDS = 60  # a process that takes longer hangs
-SECONDS = 600  # a process that waits longer hangs; a loaded machine takes many times as long as an idle one
-# The results, with the files in cases/. Timings and the database's pages may differ.
+MEMORY_MIB = 1024  # address space; not for sanitizer builds, which need far more
+PROCESSOR_SECONDS = 60  # a process that uses more has hung
+SECONDS = 600  # a process that takes longer has hung; a loaded machine takes many times as long as an idle one
+# The result files, besides those in cases/. Timings and the database's pages may differ.
 RESULTS = ("summary.json", "margins.svg", "hunt.json")
 
 
 class Violation(Exception):
-    """graze did something that it must not do."""
+    """graze did something forbidden."""
 
 
 Ran = collections.namedtuple("Ran", "status out err killed late")
@@ -70,7 +70,7 @@ class Bench:
         return f"{command} --seed {seed} --lanes interval_overlap/f32/cpu --threads 2".split()
 
     def reference(self, name, minimised=False, reported=False, shard=None):
-        """The folder of the campaign after an undisturbed run. Do not change it."""
+        """The campaign's folder after an undisturbed run. Do not change it."""
         key = (name, minimised, reported) if shard is None else (name, shard)
         if key not in self.undisturbed:
             folder = self.folder / "undisturbed" / "-".join(map(str, key)).replace("/", "of")
@@ -105,7 +105,8 @@ class Round:
         folder.mkdir(parents=True, exist_ok=True)
 
     def copies(self, campaign, count):
-        """Yields copies of a campaign's folder, and removes each after its turn. A violation keeps the current copy."""
+        """Yields copies of a campaign's folder, and removes each after its turn. Keeps the current one after a
+        violation."""
         for number in range(count):
             copy = self.folder / f"campaign-{number}"
             shutil.copytree(campaign, copy)
@@ -176,7 +177,7 @@ class Round:
         return self.finish(self.start(*arguments, file_bytes=file_bytes), kill_after)
 
     def must_end(self, ran):
-        """Requires that graze ended by itself, in time, with a documented exit status, and that a refusal is one
+        """Requires that graze ended by itself, in time, with a documented exit status, and that an error message is one
         line."""
         if ran.late or ran.status == -signal.SIGXCPU:
             raise Violation(f"expected an end within {SECONDS} s, and {PROCESSOR_SECONDS} s of a processor, found none")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Damages a campaign's database. graze must then give the results of an undisturbed run, or refuse in one line; after
-that, --discard-damaged must lead to these results."""
+"""Damages a campaign's database. graze must then give the results of an undisturbed run, or refuse with one line; after
+a refusal, --discard-damaged must give these results."""
 import shutil
 import sqlite3
 
@@ -89,7 +89,7 @@ def judge(turn, campaign):
     refused = turn.run(*command)
     if turn.is_refused(refused, DATABASE, campaign.name + ": it holds results but not their database"):
         went_on = turn.run(*command, "--discard-damaged")
-        # Another program's database, or results without a database, are not damage. The message says what to do.
+        # Another program's database, or results without a database, are no damage. The message says what to do.
         if not (turn.is_refused(went_on, campaign.name) and "choose another --out" in went_on.err):
             turn.must_succeed(went_on)
             turn.must_be_same(campaign, turn.bench.reference("small"))
@@ -107,7 +107,7 @@ def refuses_another_seed(turn, campaign, command):
     ran = turn.run(*other)
     if ran.status == 0 and (has_rows or (campaign / "cases").exists() and campaign / "summary.json" in before):
         raise Violation("expected another seed to be refused, found that the campaign was resumed")
-    if ran.status == 0:  # nothing was left of the campaign, so it started again; restores the files
+    if ran.status == 0:  # nothing was left of the campaign, so it started again; restore the files
         shutil.rmtree(campaign)
         for file, data in before.items():
             file.parent.mkdir(parents=True, exist_ok=True)
@@ -123,7 +123,7 @@ def flips(turn):
 
 
 def database_bytes(turn):
-    """Changes bytes, pieces or the end of the database, or replaces it with something else."""
+    """Changes bytes, pieces or the end of the database, or replaces it by something else."""
     for campaign in copies(turn):
         file = campaign / DATABASE
         data = file.read_bytes()
@@ -154,7 +154,7 @@ def signed(number):
 
 
 def forged(turn):
-    """Changes a row and its checksum. graze may believe the row, but nothing may break."""
+    """Changes a row and its checksum. graze may accept the row, but nothing may break."""
     for campaign in copies(turn):
         with sqlite3.connect(campaign / DATABASE, isolation_level=None) as database:
             (of_campaign,) = database.execute("SELECT checksum FROM campaign").fetchone()
@@ -185,6 +185,6 @@ def sql(turn):
                 try:
                     database.execute(each).fetchall()
                 except (sqlite3.Error, OverflowError):
-                    pass  # the second statement may no longer apply; a value that a column refuses is no damage
+                    pass  # the second statement may no longer apply; a value that a column rejects does no damage
         database.close()
         judge(turn, campaign)

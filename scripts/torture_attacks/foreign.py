@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs subjects that attack their own process (subjects/hostile.c). Their campaigns end, are stopped, or are killed,
-also while a subject is compiled. The campaign must end, the other lanes must have the verdicts of a campaign
-without these subjects, and no process may be left."""
+sometimes while a subject is compiled. The campaign must end, the other lanes must have the same verdicts as without
+these subjects, and no process may be left."""
 import json
 import os
 import pathlib
@@ -30,7 +30,7 @@ def library(bench):
 
 
 def left_over(bench):
-    """Processes started by a graze of this bench, recognised by their environment."""
+    """The processes that this bench's graze started, recognised by their environment."""
     mark = f"XDG_CACHE_HOME={bench.folder}".encode()
     found = []
     for folder in pathlib.Path("/proc").glob("[0-9]*"):
@@ -63,10 +63,10 @@ def must_end_while_it_compiles(turn):
     ran = turn.finish(started, kill_after=ENDS)
     if ran.late:
         raise Violation(f"expected an end within {ENDS} s of signal {way}, found none")
-    if ran.status not in (130, -way):  # graze was stopped in order, or before it began
+    if ran.status not in (130, -way):  # graze was stopped properly, or before it began
         raise Violation(f"expected exit status 130, found {ran.status}: {ran.err[-500:]!r}")
     must_leave_nothing(turn)
-    if way == signal.SIGKILL:  # if no compiler ran when it was killed, a later graze removes the files
+    if way == signal.SIGKILL:  # if no compiler was running at the kill, a later graze removes the files
         return
     left = list((turn.bench.folder / "cache/graze").glob("unfinished-*"))
     if left:
@@ -101,7 +101,7 @@ def foreign(turn):
                 0,
                 130,
                 -signal.SIGTERM,
-            ):  # it had ended; it was stopped in order; it had not begun
+            ):  # it had ended; it was stopped properly; it had not begun
                 raise Violation(f"expected exit status 130, found {ran.status}: {ran.err[-500:]!r}")
             must_leave_nothing(turn)
         turn.must_succeed(turn.run(*command))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mutated files for every reader. graze must read them, or refuse them in one line that names the file."""
+"""Mutated files for every reader. graze must read them, or refuse them with one line that names the file."""
 import pathlib
 import shutil
 import struct
@@ -127,14 +127,14 @@ def scenes(turn):
             if poses
             else turn.run("fuzz", "--scene", file, "--pairs", "200", *LANES, "--out", out)
         )
-        # If poses separate the bodies, there are no pairs, and the message names the mesh.
+        # If poses separate the bodies, there are no pairs, and the message names the mesh instead.
         judge(turn, ran, name, "two.off")
         shutil.rmtree(out, ignore_errors=True)
         file.unlink()
 
 
 def pairs(turn):
-    """Files of pairs, as all verbs read them, and the regression corpus."""
+    """Pair files, read by all verbs, and the regression corpus."""
     sources = sorted((PROJECT / "corpus").glob("*/*.pairs"))
     cases = sorted((turn.bench.reference("small") / "cases").glob("*.pairs"))
     minimised = sorted((turn.bench.reference("tiny", minimised=True) / "cases").glob("*.pairs"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Kills, full disks, two processes at once. In the end the bytes must be those of an undisturbed run."""
+"""Kills, full disks, two processes at once. At the end, the bytes must be those of an undisturbed run."""
 import contextlib
 import os
 import shutil
@@ -11,11 +11,11 @@ from torture_attacks.bench import Violation, bytes_of
 
 
 def kill_repeatedly(turn, begin, arguments, seconds):
-    """Kills the command one to three times, at random moments. `begin` makes it start from the beginning.
-    Returns: how often it was killed."""
+    """Kills the command one to three times, at random moments. `begin` makes it start from the beginning. Returns: how
+    often it was killed."""
     kills = 0
     for attempt in range(6):
-        # Most problems occur near the beginning and the end, so these are chosen more often.
+        # Most problems occur near the beginning and the end, so those moments are chosen more often.
         share = turn.random.choice([turn.random.random(), turn.random.random() * 0.1, 0.8 + turn.random.random() * 0.4])
         if turn.run(*arguments, kill_after=seconds * share).killed:
             kills += 1
@@ -81,7 +81,7 @@ def kill_minimize(turn):
 
 @contextlib.contextmanager
 def small_disk(folder, size):
-    """A file system of `size` bytes. Yields: a function that enlarges it; None if it cannot be mounted."""
+    """A file system of `size` bytes. Yields: a function that enlarges it, or None if it cannot be mounted."""
     folder.mkdir()
     options = f"size={max(size, 4096)},mode=0700"
     have = (
@@ -111,12 +111,12 @@ def made_read_only(folder):
     finally:
         remount("rw")
     if bytes_of(folder) != before:
-        raise Violation("expected a folder that can only be read to stay as it is, found it changed")
+        raise Violation("expected a read-only folder to be unchanged, found it changed")
 
 
 def finish_both(turn, first, second, pauses, name):
-    """Runs two commands at once, the second after one of these pauses. At least one must succeed, and a refusal must
-    contain the name.   Returns: whether one was refused."""
+    """Runs two commands at once, the second after one of these pauses. At least one must succeed, and an error message
+    must contain the name.   Returns: whether one was refused."""
     started = turn.start(*first)
     time.sleep(turn.random.choice(pauses))
     both = [turn.finish(other, judged=False) for other in (turn.start(*second), started)]
@@ -131,7 +131,7 @@ def finish_both(turn, first, second, pauses, name):
 
 
 def read_only(turn):
-    """A killed campaign on a read-only file system. graze must refuse it in one line and change nothing."""
+    """A killed campaign on a read-only file system. graze must refuse it with one line and change nothing."""
     campaign, reference = turn.folder / "disk" / "campaign", turn.bench.reference("large")
     command = [*turn.bench.campaign("large"), "--out", campaign]
     with small_disk(turn.folder / "disk", 64 << 20) as mounted:
@@ -170,7 +170,7 @@ def full_disk(turn):
         else:
             limit = turn.random.randrange(
                 1024, max(sizes) + 1
-            )  # a smaller limit would cut graze's message, which goes to a file
+            )  # a smaller limit would cut off graze's message, which is written to a file
         ran = turn.run(*command, file_bytes=limit)
         refused = turn.is_refused(ran, "campaign", "cases")
         (turn.folder / "disk" / "filler").unlink(missing_ok=True)
@@ -183,8 +183,8 @@ def full_disk(turn):
 
 
 def two_at_once(turn):
-    """Two processes in one campaign folder. The second must wait, or be refused in one line. Afterwards the results must
-    be right."""
+    """Two processes in one campaign folder. The second must wait, or be refused with one line. Afterwards the results
+    must be right."""
     campaign = turn.folder / "campaign"
     fuzz = [*turn.bench.campaign("tiny"), "--out", campaign]
     large = [*turn.bench.campaign("large"), "--out", campaign]

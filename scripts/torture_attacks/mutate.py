@@ -65,7 +65,7 @@ def repeat(random, data):
 
 
 def overwrite(random, data):
-    """Overwrites a piece with zeros or with another piece."""
+    """Overwrites a piece with zeros, or with another piece."""
     first, last = _piece(random, data)
     other = random.randrange(len(data))
     piece = bytes(last - first) if random.random() < 0.5 else data[other : other + last - first]
@@ -117,7 +117,7 @@ def _places(value):
 
 
 def edit_json(random, data):
-    """Replaces a value somewhere with one of another type or size, or removes it."""
+    """Replaces a random value by one of another type or size, or removes it."""
     value = json.loads(data)
     places = list(_places(value))
     if not places:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A device, pipe, link or folder at the path of --out must not be replaced."""
+"""graze must not replace a device, pipe, link or folder at the path of --out."""
 import os
 import pathlib
 import stat
@@ -12,7 +12,7 @@ LANE = "guigue_devillers_2003/f32/cpu"
 
 
 def verbs(turn):
-    """Lists of arguments, to which the output file has to be appended."""
+    """Lists of arguments, to which the output file must be appended."""
     (turn.folder / "pair.txt").write_text(PAIR)
     report = turn.bench.reference("tiny", reported=True) / "report.json"
     return [
@@ -23,7 +23,7 @@ def verbs(turn):
 
 
 def device(folder, minor, name):
-    """Makes a separate device, so that a defect cannot destroy the machine's own. Returns: None if that is not
+    """Makes a separate device node, so that a defect cannot destroy the machine's own. Returns: None if not
     permitted."""
     node = folder / f"{name}.png"
     try:
@@ -76,7 +76,7 @@ def to_a_pipe(turn, verb, folder, expected):
         reader = subprocess.Popen(["cat", pipe], stdout=piped)
     try:
         turn.must_succeed(turn.run(*verb, pipe))
-        expect(stat.S_ISFIFO(os.lstat(pipe).st_mode), "the pipe to stay one")
+        expect(stat.S_ISFIFO(os.lstat(pipe).st_mode), "the pipe to stay a pipe")
         reader.wait(30)
         expect((folder / "piped").read_bytes() == expected, "the same bytes through a pipe")
     finally:
@@ -87,16 +87,16 @@ def to_a_pipe(turn, verb, folder, expected):
 
 def to_links(turn, verb, folder, expected):
     target, link, dangling, loop = (folder / name for name in ("target.png", "link.png", "dangling.png", "loop.png"))
-    target.write_bytes(expected)  # a file that graze made; results.foreign_places tests other files
+    target.write_bytes(expected)  # graze's own file; results.foreign_places tests other files
     link.symlink_to(target.name)
     dangling.symlink_to("made.png")
     loop.symlink_to("loop.png")
     for name, behind in ((link, target), (dangling, folder / "made.png")):
         turn.must_succeed(turn.run(*verb, name))
-        expect(name.is_symlink() and behind.read_bytes() == expected, "the link to stay, and the bytes behind it")
+        expect(name.is_symlink() and behind.read_bytes() == expected, "the link to stay a link, to the expected bytes")
         turn.count("same")
     turn.must_refuse(turn.run(*verb, loop), "a link to itself", loop.name)
-    expect(loop.is_symlink(), "the link to stay")
+    expect(loop.is_symlink(), "the link to stay a link")
 
 
 def to_folders(turn, verb, folder, _expected):
@@ -104,7 +104,7 @@ def to_folders(turn, verb, folder, _expected):
     there.mkdir()
     (there / "kept").write_text("kept")
     turn.must_refuse(turn.run(*verb, there), "a folder", there.name)
-    expect([file.name for file in there.iterdir()] == ["kept"], "the folder to stay as it is")
+    expect([file.name for file in there.iterdir()] == ["kept"], "the folder to be unchanged")
     missing = folder / "missing" / "file.png"
     turn.must_refuse(turn.run(*verb, missing), "a file in no folder", missing.name)
 
@@ -130,6 +130,6 @@ def campaigns(turn):
     node = device(folder, 3, "null")
     for name in [*names, *([node] if node else [])]:
         turn.must_refuse(turn.run(*command, name), name, name.name)
-    expect((folder / "file").read_text() == "kept", "the file to stay as it is")
-    expect(node is None or stat.S_ISCHR(os.lstat(node).st_mode), "the device to stay one")
+    expect((folder / "file").read_text() == "kept", "the file to be unchanged")
+    expect(node is None or stat.S_ISCHR(os.lstat(node).st_mode), "the device to stay a device")
     to_nothing(turn, command, folder, b"")

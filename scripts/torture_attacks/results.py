@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Attacks on verbs other than those of campaigns: kills, full disks, read-only disks, and two processes at once. In the
-end the bytes must be those of an undisturbed run, except for timings, and no file may be partial. Also checks that the
-verbs do not replace files of others."""
+"""Attacks on the verbs that run no campaign: kills, full disks, read-only disks, and two processes at once. At the end,
+the bytes must be those of an undisturbed run, except for timings, and no file may be partial. Also checks that the
+verbs do not replace files that are not graze's."""
 import json
 import os
 import shutil
@@ -103,7 +103,7 @@ def undisturbed(turn, verb):
 
 
 def on_some_verbs(attack):
-    """Makes an attack on one verb into a round of attacks on some verbs."""
+    """Turns an attack on one verb into a round of attacks on some verbs."""
 
     def attack_some(turn):
         for verb in turn.random.sample(VERBS, ATTEMPTS):
@@ -120,7 +120,7 @@ def on_some_verbs(attack):
 
 
 def must_be_whole(out, expected, begun):
-    """Requires that no result is partial: each file is as before or as in the end."""
+    """Requires that no result is partial: each file must be as before the run, or as after a complete one."""
     for name, data in snapshot(out).items():
         if data != expected.get(name) and data != begun.get(name):
             raise Violation(f"expected {name} whole or not at all, found something else")
@@ -142,7 +142,7 @@ def kill_results(turn, verb, out, expected):
             * turn.random.choice([turn.random.random(), 0.9 + 0.2 * turn.random.random()]),
         )
         must_be_whole(out, expected, begun)
-        if verb == "merge" and out.exists():  # it had finished; merge writes only into a new folder
+        if verb == "merge" and out.exists():  # the merge had finished; it writes only into a new folder
             shutil.rmtree(out)
     must_end_alike(turn, verb, out, expected)
     turn.count("same")
@@ -154,7 +154,7 @@ def full_results(turn, verb, out, expected):
     largest = max(len(data) if isinstance(data, bytes) else len(json.dumps(data)) for data in expected.values())
     limit = turn.random.randrange(
         1024, max(largest, 2048)
-    )  # a smaller limit would cut graze's message, which goes to a file
+    )  # a smaller limit would cut off graze's message, which is written to a file
     ran = turn.run(*command(turn.bench, verb, out), file_bytes=limit)
     refused = turn.is_refused(ran, verb, "campaign.sqlite", "room", "memory with a subject", "cannot compile")
     must_be_whole(out, expected, begun)
@@ -190,7 +190,7 @@ def two_results(turn, verb, out, expected):
 
 
 def leaves(value, kind, place=()):
-    """The paths of all values of this type. A truth value is no number."""
+    """The paths of all values of this type. Booleans do not count as numbers."""
     if isinstance(value, (dict, list)):
         for key, inner in value.items() if isinstance(value, dict) else enumerate(value):
             yield from leaves(inner, kind, (*place, key))
@@ -206,8 +206,7 @@ def changed(value, place, by):
 
 
 def forged_summaries(turn):
-    """Forges counts in a campaign's JSON. graze must refuse the file by name, with or without the database beside
-    it."""
+    """Forges counts in a campaign's JSON. graze must refuse the file and name it, with or without the database."""
     reported = turn.bench.reference("tiny", minimised=True, reported=True)
     for campaign in turn.copies(reported, 4):
         name = turn.random.choice(["summary.json", "summary.json", "failures.json", "report.json"])
@@ -251,7 +250,7 @@ def forged_summaries(turn):
 
 
 def forged_kinds(turn):
-    """Forges kinds, costs and a status. graze must refuse the file by name."""
+    """Forges kinds, costs and a status. graze must refuse the file and name it."""
     reported = turn.bench.reference("tiny", minimised=True, reported=True)
 
     def cost(value):
@@ -283,7 +282,7 @@ def forged_kinds(turn):
 
 
 def unsealed(turn):
-    """Changes a text, so that no count contradicts the change. The checksum must reveal it in every kind of file."""
+    """Changes a text, which no count contradicts. In every kind of file, the checksum must reveal the change."""
     reported = turn.bench.reference("tiny", minimised=True, reported=True)
     maps = turn.random.choice(sorted((reported / "cases").glob("*.maps.json"))).relative_to(reported).as_posix()
     page = ["report", "--from", "report.json", "--out", "page.html"]
@@ -309,8 +308,8 @@ def unsealed(turn):
 
 
 def forged_cases(turn):
-    """Forges a file of cases: another signature's file, a missing pair, or a different pair. graze must refuse it by
-    name, and the command in its message must restore it."""
+    """Forges a case file: another signature's file, a missing pair, or a different pair. graze must refuse the file and
+    name it, and the command in its message must restore it."""
     minimised = turn.bench.reference("tiny", minimised=True)
     rows = json.loads((minimised / "summary.json").read_text())["signatures"]
     for campaign in turn.copies(minimised, 4):
@@ -341,7 +340,7 @@ def forged_cases(turn):
 
 
 def pipes(turn):
-    """Puts a pipe in place of a record. No verb may wait for it, and a refusal must name it."""
+    """Puts a pipe in place of a record. No verb may wait for it, and an error message must name it."""
     reported = turn.bench.reference("tiny", minimised=True, reported=True)
     records = ["summary.json", "campaign.sqlite", "timings.json", "status.json", "failures.json", "costs.json"]
     records += [file.relative_to(reported).as_posix() for file in sorted((reported / "cases").iterdir())]
@@ -358,14 +357,14 @@ def pipes(turn):
         ran = turn.run(*turn.random.choice([*verbs, [*turn.bench.campaign("tiny"), "--out", campaign]]))
         refused = turn.is_refused(ran, record.name)
         if not stat.S_ISFIFO(os.lstat(record).st_mode):
-            raise Violation(f"expected the pipe {record.name} to stay one, found another file")
+            raise Violation(f"expected {record.name} to stay a pipe, found another file")
         turn.count("refused" if refused else "read")
         shutil.rmtree(turn.folder / "m", ignore_errors=True)
 
 
 def foreign_places(turn):
-    """Results in a folder with a person's own files. graze must refuse in one line and keep them; --force writes
-    there."""
+    """Results in a folder with a person's own files. graze must refuse with one line and keep them; with --force, it
+    must write there."""
     folder = turn.folder / "mine"
     folder.mkdir()
     (folder / "notes.txt").write_text("kept")
@@ -377,7 +376,7 @@ def foreign_places(turn):
             ran = turn.run(*verb, name)
             turn.must_refuse(ran, "a file of another", name.name, "in this build", "build with")
             if theirs.read_text() != "kept" or not link.is_symlink():
-                raise Violation(f"expected a file that is not of graze to stay, found that {verb[0]} replaced it")
+                raise Violation(f"expected a file that is not graze's to be kept, found that {verb[0]} replaced it")
         if "--force" in ran.err:
             turn.must_succeed(turn.run(*verb, link, "--force"))
             if theirs.read_bytes() == b"kept":
@@ -388,16 +387,16 @@ def foreign_places(turn):
     os.link(theirs, turn.folder / "linked.html.graze.part")
     turn.run("view", "pair.txt", "--out", turn.folder / "linked.html")
     if theirs.read_text() != "kept":
-        raise Violation("expected a file that another name leads to to stay, found that view wrote into it")
+        raise Violation("expected a hard-linked file to be unchanged, found that view wrote into it")
     turn.count("same")
     campaign = turn.folder / "campaign"
     shutil.copytree(turn.bench.reference("tiny"), campaign)
     case = turn.random.choice(sorted((campaign / "cases").glob("*.pairs")))
     case.write_text("kept")
     ran = turn.run(*turn.bench.campaign("tiny"), "--out", campaign)
-    turn.must_refuse(ran, "a case that is not of graze", case.name)
+    turn.must_refuse(ran, "a case that is not graze's", case.name)
     if case.read_text() != "kept":
-        raise Violation("expected a case that is not of graze to stay, found that fuzz replaced it")
+        raise Violation("expected a case that is not graze's to be kept, found that fuzz replaced it")
     tiny = [*turn.bench.campaign("tiny"), "--out"]
     for verb in [
         tiny,
@@ -407,7 +406,7 @@ def foreign_places(turn):
         turn.must_refuse(ran, "a folder of other things", folder.name, "in this build")
         if [file.name for file in folder.iterdir()] != ["notes.txt"]:
             raise Violation(
-                f"expected a folder that is not of graze to stay as it is, found that {verb[0]} wrote into it"
+                f"expected a folder that is not graze's to be unchanged, found that {verb[0]} wrote into it"
             )
     league = turn.folder / "league"
     (league / "league").mkdir(parents=True)
@@ -416,5 +415,5 @@ def foreign_places(turn):
     turn.is_refused(ran, "league", "in this build")
     ran = turn.run(*command(turn.bench, "league", league), "--force")
     if (league / "league" / "mine.svg").read_text() != "kept":
-        raise Violation("expected league to remove only drawings of its own, found another gone")
+        raise Violation("expected league to remove only its own drawings, found that another is missing")
     turn.count("same" if ran.status == 0 else "refused")

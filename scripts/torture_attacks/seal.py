@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The checksum that graze writes as the last key of a JSON result, as a forger would compute it: FNV-1a of the object's
+"""The checksum that graze writes as the last key of a JSON result, computed as a forger would: FNV-1a of the object's
 text without spaces (fuzz/sealed.h)."""
 import json
 import re
@@ -8,7 +8,7 @@ from torture_attacks.bench import Violation
 
 
 class Number(float):
-    """A fraction with the digits of the file, because graze writes some fractions with more digits than Python would."""
+    """A fraction with the file's digits, because graze writes some fractions with more digits than Python would."""
 
     def __new__(cls, text):
         number = super().__new__(cls, text)
@@ -43,7 +43,7 @@ def checksum(value):
 
 
 def read(file):
-    """The object of a file that graze sealed, without its checksum."""
+    """The object in a file that graze sealed, without its checksum."""
     value = loads(file.read_text())
     if value.pop("checksum") != checksum(value):
         raise Violation(f"expected {file.name} with the checksum of its text, found another")

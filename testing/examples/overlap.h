@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The code under test: separating axes in double precision. It is exact on small integers, and rounds elsewhere.
+// The code under test: separating axes in double precision. It is exact on small integers and rounds on other numbers.
 #pragma once
 
 #include <algorithm>

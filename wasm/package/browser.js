@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze-wasm in browsers. Bundlers find the module by the URL in this file.
+// graze-wasm in browsers. Bundlers find the module through the URL in this file.
 import { packaged } from './packaged.js';
 
 /** @typedef {import('./graze.js').Graze} Graze */

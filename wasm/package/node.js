@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze-wasm in Node. The module is a file beside this file.
+// graze-wasm in Node. Reads the module from the file beside this one.
 import { readFile } from 'node:fs/promises';
 import { packaged } from './packaged.js';
 

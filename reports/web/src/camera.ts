@@ -5,7 +5,7 @@ import { MathUtils, OrthographicCamera } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { View } from './drawing';
 
-const kSteepest = 1e-3; // radians from straight above or below, where left and right become undefined
+const kSteepest = 1e-3; // least angle in radians from straight above or below, where left and right are undefined
 const kFar = 1e4; // parts outside the frame may be far in front of the framed part
 
 export function view_of({ position, zoom }: OrthographicCamera): View {
@@ -17,7 +17,7 @@ export interface Orbit {
   set: (view: Partial<View>) => void;
 }
 
-// Calls `turned` whenever the camera has moved, and `rested` at the end of a drag.
+// Calls `turned` after each move of the camera, and `rested` at the end of a drag.
 export function orbit(board: HTMLElement, view: View, turned: () => void, rested: () => void): Orbit {
   const camera = new OrthographicCamera();
   camera.up.set(0, 0, 1);

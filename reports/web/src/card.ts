@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The card of a kind of failure: the simplest case, every lane's verdict on that case, the explanation, and the
-// commands that reproduce it.
+// The card of a kind of failure: the simplest case, each lane's verdict on it, the explanation, and the commands that
+// reproduce it.
 import { viewer_button } from './card_viewer';
 import { breakable, button, code_block, copy_button, h, lazy_details, list, scroller, table, table_row } from './dom';
 import { counted, figure } from './format';
@@ -105,8 +105,8 @@ function ulp_maps(maps: NonNullable<Card['maps']>) {
   );
 }
 
-// Buttons for the card's programs; each button shows or hides its program. The report stores the algorithm's source
-// only once, so the programs contain @SOURCE@ in its place.
+// Buttons that each show or hide one of the card's programs. The report stores the algorithm's source only once, so the
+// programs have @SOURCE@ in its place.
 function snippets(report: Report, card: Card) {
   const shown = h('div', {});
   const buttons = card.snippets.map(({ label, text: without_source }) => {

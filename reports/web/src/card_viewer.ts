@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows a card's case in the viewer, in a dialog over the report. The page contains the viewer's module and data, and
-// unpacks them when the first case is opened. The address stores the card, the pair and the lane:
+// Shows a card's case in the viewer, in a dialog over the report. The page contains the viewer's module and data, which
+// are unpacked when the first case is opened. The address stores the card, the pair and the lane:
 // "#kind-7&p=…&by=moller_1997/f32/cuda-fma".
 import { button, h } from './dom';
 import { kind_words, within } from './kind';
@@ -13,7 +13,7 @@ import { viewer, type First } from './viewer/viewer';
 
 type Card = Report['cards'][number];
 
-// The viewer's module and data, for each coordinate type of the cards.
+// The viewer's module and data, for each coordinate type that the cards have.
 type Parts = Partial<Record<Scalar, Stored>>;
 let read: Parts | null | undefined;
 const parts = () =>
@@ -22,7 +22,7 @@ export const has_viewer = () => parts() !== null;
 
 const bits_of = ({ coordinates, pair }: Card) => to_bits(stored_as(coordinates, pair.value));
 
-// Returns a lane of the card's kind that is wrong on the pair shown and that the viewer can run; '' if there is none.
+// Returns a lane of the card's kind that is wrong on the pair shown and that the viewer can run; '' if none.
 function lane_of(report: Report, { coordinates, kind, verdicts }: Card) {
   const lanes = parts()![coordinates]!.replay.lanes,
     wrong = verdicts
@@ -45,7 +45,7 @@ export const viewer_button = (report: Report, card: Card, id: string) =>
   has_viewer() &&
   button('Open in the viewer', () => into_viewer(id, bits_of(card), lane_of(report, card)), { class: 'in-viewer' });
 
-// Opens the viewer if the address contains a pair, and otherwise closes it: now, and whenever the address changes.
+// Opens the viewer if the address contains a pair, otherwise closes it: now, and after each change of the address.
 export function follow_viewer(report: Report, id_of: (place: number) => string) {
   if (!has_viewer()) return;
   const names = report.cards.map((card, i) => `Card ${i + 1}: ${kind_words(card.kind)}`);

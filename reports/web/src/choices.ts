@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sections for the results of `graze tune`, `graze pareto` and `graze discrepancy`, if the campaign's folder has them.
+// Sections for the results of `graze tune`, `graze pareto` and `graze discrepancy` in the campaign's folder, if any.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named, shares_axis, x_label } from './chart';
 import { breakable, button, choice, code_block, copy_button, h, list, on_width, section, sentence } from './dom';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Creates elements, and small components that several sections use.
+// Creates elements, and small components that several sections share.
 
 export type Child = Node | string | null | false | Child[];
 type Props = Record<string, string | number | boolean | null | ((event: never) => void)>;
@@ -68,12 +68,12 @@ export function breakable(id: string): Child[] {
   return id.split(/(?<=[_/])/).flatMap((part, i) => (i ? [h('wbr', {}), part] : [part]));
 }
 
-// A sentence whose text between backticks becomes code.
+// A sentence in which text between backticks becomes code.
 export function sentence(text: string): Child[] {
   return text.split('`').map((part, i) => (i % 2 ? h('code', {}, part) : part));
 }
 
-// A text of this page with marks: `code`, **strong**, *emphasised*.
+// A text of this page with markup: `code`, **strong**, *emphasised*.
 export const marked = (text: string): Child[] =>
   text
     .split(/(`.*?`|\*\*.*?\*\*|\*.*?\*)/)
@@ -91,7 +91,7 @@ async function to_clipboard(text: string) {
   try {
     await navigator.clipboard.writeText(text);
   } catch {
-    // some browsers offer no clipboard, because they do not treat a file on disk as a secure context
+    // some browsers have no clipboard here, because they do not consider a file on disk a secure context
     const area = h('textarea', { class: 'hidden' });
     area.value = text;
     document.body.append(area);
@@ -148,7 +148,7 @@ export function choice(label: string, options: [string, string][], value: string
   return h('label', { class: 'field' }, h('span', {}, label), select);
 }
 
-// Calls draw(width) soon, and whenever the element's width changes.   Returns: a function that draws again now, if the
+// Calls draw(width) soon, and after each change of the element's width.   Returns: a function that redraws now, if the
 // element is shown.
 export function on_width(element: HTMLElement, draw: (width: number) => void) {
   let last = 0;

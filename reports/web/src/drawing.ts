@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prepares a pair for drawing: fits it into a box of half-width 1, and projects it along a direction. All maps are
-// affine, so straight lines and contacts are preserved. Uses double, because a card's coordinates range from 2^-149
-// to 2^128.
+// Prepares a pair to be drawn: fits it into a box of half-width 1, and projects it along a direction. All maps are
+// affine, so they preserve straight lines and contacts. Uses doubles, because a card's coordinates range from 2^-149 to
+// 2^128.
 import { figure } from './format';
 import type { Report } from './report';
 
@@ -37,10 +37,10 @@ export interface View {
   zoom: number;
 }
 
-const kLongestToScale = 12; // if extents differ by a larger factor than this, all axes are stretched to one length
+const kLongestToScale = 12; // if extents differ by more than this factor, all axes are stretched to the same length
 
-// Returns, for each axis, the extent that fills the drawing. This is the longest extent of all axes, or each axis's own
-// extent if the extents differ much.
+// Returns, for each axis, the extent that fills the drawing: the longest extent of all axes, or, if the extents differ
+// much, the axis's own extent.
 export function drawn_sizes(low: number[], high: number[], value: ArrayLike<number>): Vec {
   const extent = low.map((l, k) => high[k] - l);
   const longest = Math.max(...extent) || Math.max(...Array.from(value, Math.abs)) || 1;
@@ -151,7 +151,7 @@ export function project(
 const kMostNumbers = 30, // triangles with numbers; more would be unreadable
   kMostCoordinates = 10;
 
-// The names of the triangles in view, or of only the nearest of these triangles if there are too many.
+// The names of the triangles in view or, if there are too many, of the nearest ones only.
 function names_of_many(shape: Shape, view: View, width: number, height: number) {
   const inside = ({ x, y }: { x: number; y: number }) => x > 0 && y > 0 && x < width && y < height;
   const seen = (shape.many_names ?? [])

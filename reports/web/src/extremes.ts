@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Heat maps over the size of the coordinates and over a pair's distance from the origin. A cell shows how many times as
-// often a lane errs there as on the pairs nearest to 2^0. A table in words also covers flat triangles and needles,
-// which `graze pareto` measures.
+// Heat maps over the size of the coordinates and over a pair's distance from the origin. A cell shows the ratio of a
+// lane's error rate there to its rate on the pairs nearest to 2^0. A table with sentences also covers flat triangles
+// and needles, which `graze pareto` measures.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named, x_label } from './chart';
 import { breakable, h, more_facts, on_width, section } from './dom';
@@ -28,7 +28,7 @@ const ratio = ({ times }: Cell) => `${times[0] === null ? 'at least ' : ''}${fig
 const bounds = ([, low, high]: Times) =>
   high === null ? `95 %: ${figure(low)} and more` : `95 %: ${figure(low)} to ${figure(high)}`;
 
-// A cell with fewer pairs than this is drawn thin, because its rate may be due to chance.
+// A cell with fewer pairs than this is drawn thin, because its rate may be a coincidence.
 const kFew = 100;
 const few = ({ wrong }: Cell) => wrong.of < kFew;
 
@@ -94,7 +94,7 @@ function cells_of(report: Report, kind: Kind, lanes: number[]): Cell[] {
     );
 }
 
-// A table with a row for each lane. Its cells are texts of the campaign's report and of pareto.json.
+// A table with a row for each lane. Its cells are texts from the campaign's report and from pareto.json.
 function words_table(report: Report, pareto: Pareto | null, lanes: number[]) {
   const said = (lane: number, kind: Kind) =>
     report.extremes.find((row) => row.lane === lane && row.kind === kind)?.says ?? 'no pairs';

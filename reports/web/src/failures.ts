@@ -45,7 +45,7 @@ export function failure_sections(report: Report) {
   const none = h('p', { class: 'empty' }, 'No card passes the filter.');
   const card_count = h('h3', {});
 
-  // Describes the chosen cell of the league table, above the cards and the table of signatures.
+  // Describes the chosen cell of the league table, above the cards and the signature table.
   function note(cell: Cell, rows: Signature[], left: number) {
     const words = cell_words(report, cell);
     const clear = button('Show all again', () => {
@@ -74,7 +74,7 @@ export function failure_sections(report: Report) {
     );
   }
 
-  // The search for kinds matches their properties and lanes. The search for signatures also matches their kinds.
+  // The search for kinds matches their properties and lanes. The search for signatures also matches their kinds' names.
   const names_of = ({ kind }: Report['cards'][number]) => [kind.key, kind_words(kind), kind.line];
 
   function update() {
@@ -100,7 +100,7 @@ export function failure_sections(report: Report) {
     table.show(rows);
 
     // A card is shown for a cell if a listed signature belongs to its kind and the cell's lane is one of the kind's
-    // lanes. Kinds do not tell which lanes differ from the cpu lane, so that error needs only the signature.
+    // lanes. Kinds do not record which lanes differ from the cpu lane, so for that error the signature is enough.
     const of_cell = cell && new Set(rows.flatMap((s) => s.cards));
     const shows = (place: number) =>
       !of_cell ||

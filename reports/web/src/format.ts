@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formats numbers for readers, always in the English notation, so that a report looks the same everywhere.
+// Formats numbers for readers, always in English notation, so a report looks the same everywhere.
 import type { Quartiles, Share } from './report';
 
 export const count = (n: number) => n.toLocaleString('en-US');
@@ -27,7 +27,7 @@ export function margin_order(margin: string) {
   return found ? (found[1] === '-' ? -1 : 1) * (Number(found[2]) + 200) : 0;
 }
 
-// A number with three significant digits. Below 0.001, and from 10^6 upwards, it is written with a power of ten.
+// A number with three significant digits, written with a power of ten if it is below 0.001 or at least 10^6.
 export function figure(value: number): string {
   if (value === 0 || !Number.isFinite(value)) return String(value);
   const exponent = Math.floor(Math.log10(Math.abs(value)));
@@ -36,7 +36,7 @@ export function figure(value: number): string {
   return `${Number(digits)}·10${raised(Number(power))}`;
 }
 
-// Whether a cost's quartiles are further apart than a quarter of its median: the same rule as in reports/cost_words.h.
+// Whether a cost's quartiles are further apart than a quarter of its median, as in reports/cost_words.h.
 export const is_noisy = (cost: Quartiles) => cost.high - cost.low > 0.25 * cost.middle;
 
 // "quartiles 8.4 to 8.9", for the title of a cost.
@@ -48,7 +48,7 @@ export const noisy_mark = (cost: Quartiles) => (is_noisy(cost) ? ' (noisy)' : ''
 // "42 ns", "8.5 ns"
 export const nanoseconds = (value: number) => `${value.toFixed(value < 10 ? 1 : 0)} ns`;
 
-// The number of decimals of a percentage.
+// The number of decimal places of a percentage.
 const places = (percent: number) => (percent >= 10 ? 1 : percent >= 1 ? 2 : 3);
 
 // A share as a percentage without the sign: 47.8, 0.156, <0.001.

@@ -21,7 +21,7 @@ interface Dot {
 
 const kSymbols = ['circle', 'square', 'triangle', 'diamond2', 'star'] as const;
 
-// The group of strata whose costs are compared, the same as in the answer's sentences. Null stands for all strata.
+// The group of strata on which costs are compared, the same as in the answer's sentences. Null means all strata.
 function cost_ground(report: Report) {
   const general = report.groups.findIndex((group) => group.id === 'general');
   return general < 0 ? null : general;
@@ -147,7 +147,7 @@ export function glance(report: Report, costs: Costs | null) {
       {},
       costs
         ? `Cost: median of ${costs.passes} passes${timed ? ` over ${count(timed.pairs)} of the campaign’s pairs` : ''}, one core, ${costs.machine}.${rows.some((row) => !row.cost) ? ' Lanes without a cost were not timed: your own code, and CUDA lanes without a device.' : ''}`
-        : 'This page has no costs of the lanes.',
+        : 'This page has no lane costs.',
     ),
   );
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fields whose values the URL keeps (state.ts).
+// Fields whose values are kept in the URL (state.ts).
 import { choice, h } from './dom';
 import { choose, chosen, when_chosen } from './state';
 
-// A labelled <select>. The first option is the default, which the URL leaves out. `changed` is called after the reader
-// has chosen; after a link or Back, only the field changes.
+// A labelled <select>. The first option is the default, which is not written to the URL. `changed` is called after the
+// reader makes a choice; after a link or Back, only the field changes.
 export function kept_choice(key: string, label: string, options: [string, string][], changed: () => void) {
   const value = () => (options.find(([id]) => id === chosen(key)) ?? options[0])[0];
   const element = choice(label, options, value(), (id) => {

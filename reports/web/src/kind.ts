@@ -24,7 +24,7 @@ export const kind_title = ({ subject, cause, line, shape }: FailureKind): Child[
 // Lane names without the algorithm: "f32/cpu, f64/cpu".
 export const within = (ids: string[]) => ids.map((id) => id.split('/').slice(1).join('/')).join(', ');
 
-// Names the lanes of the kind and those that are wrong on the pair shown, and says for how many the cause is settled.
+// Names the kind's lanes and those that are wrong on the pair shown, and counts those whose cause is settled.
 export function kind_lanes(report: Report, { kind, verdicts }: Card) {
   const wrong = new Set(verdicts.filter((verdict) => verdict.wrong).map((verdict) => report.lanes[verdict.lane].id));
   const here = kind.lanes.filter((id) => wrong.has(id)),

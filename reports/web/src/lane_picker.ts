@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chooses lanes by algorithm, scalar and target. A lane is shown if all three rows of buttons allow it. The URL stores
-// choices that differ from the default, with `key` in their names: "league-target=cpu,cpu-fma".
+// choices that differ from the default; their names contain `key`: "league-target=cpu,cpu-fma".
 import { button, h } from './dom';
 import type { Report } from './report';
 import { choose, chosen, when_chosen } from './state';

@@ -164,7 +164,7 @@ export function league_section(report: Report) {
       'p',
       {},
       marked(
-        'All shares are in per cent. A **false positive** is the verdict “intersects” on triangles that are apart. Its share is that among the pairs that are apart. A **false negative** is the verdict “disjoint” on triangles that meet. Its share is that among the pairs that intersect. Each cell shows false positives above false negatives. Click a column’s heading to sort by that column.',
+        'All shares are in per cent. A **false positive** is the verdict “intersects” on triangles that are apart. Its share counts only the pairs that are apart. A **false negative** is the verdict “disjoint” on triangles that meet. Its share counts only the pairs that intersect. Each cell shows false positives above false negatives. Click a column’s heading to sort by that column.',
       ),
     ),
     h('div', { class: 'controls' }, search, shows.element, strata.element, both_types && types.element),

@@ -34,8 +34,8 @@ function side_words({ side, exponent }: Point) {
   return side === 'disjoint' ? `${bucket(exponent)} apart` : `${bucket(exponent)} deep`;
 }
 
-// Draws a chart into `element`. what: the share to draw; title and label: its names; word: the adjective for such a
-// verdict, as in "wrong".
+// Draws a chart into `element`. what: the share to draw; title and label: its names; word: the adjective for the
+// counted verdicts, such as "wrong".
 export function margin_chart(
   report: Report,
   element: HTMLElement,

@@ -2,10 +2,9 @@
 // Draws a pair as SVG, for print and for browsers without WebGL.
 import { labels, project, type Shape, type Vec, type View } from './drawing';
 
-const kMostTriangles = 500; // in one mark; to draw more would take a browser seconds
+const kMostTriangles = 500; // in one mark; drawing more would take a browser seconds
 const kSvg = 'http://www.w3.org/2000/svg';
 
-// An element of an SVG.
 export function node(name: string, attributes: Record<string, string | number>, text = '') {
   const element = document.createElementNS(kSvg, name);
   for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The contents of report.json. reports/report.cpp writes it and computes all numbers; the page only renders them.
 // tests/types.spec.ts checks real reports against these types. Lanes and strata are given by their index in `lanes` and
-// `strata`. Missing values are null or an empty array.
+// `strata`. A missing value is null or an empty array.
 
 export interface Share {
   count: number;
@@ -15,8 +15,8 @@ export type Times = [number | null, number, number | null];
 
 // The smallest margin (in ulps, a power of two) at or above which no error was seen; if there was no error, the
 // smallest margin seen. `bound`: the 95 % upper bound of the error rate on the `above` pairs beyond it, 1 - 0.05^(1/n).
-// If exponent is null, errors were seen up to the largest margin, 2^largest. If largest is null, there is no pair on
-// that side of zero.
+// exponent is null if errors were seen up to the largest margin, 2^largest. largest is null if no pair is on that side
+// of zero.
 export interface Threshold {
   exponent: number | null;
   above: number;
@@ -24,9 +24,9 @@ export interface Threshold {
   largest: number | null;
 }
 
-// costs.json: lane costs in nanoseconds per pair on one core. It is a separate file because costs depend on the
-// machine. low, middle and high are the quartiles of the passes. A null group means all strata. answer: the report's
-// answer with costs.
+// costs.json: lane costs in nanoseconds per pair on one core, in a separate file because they depend on the machine.
+// low, middle and high are the quartiles of the passes. A null group means all strata. answer: the report's answer with
+// costs.
 export interface Costs {
   machine: string;
   passes: number;
@@ -80,7 +80,7 @@ export interface Pareto {
   seed: number;
   machine: string;
   // Lanes on one core have in_cache, from_memory and one_a_call. Lanes on a device have resident, with_copies and the
-  // resources of the kernels.
+  // kernels' resources.
   // failure: the smallest pair on which the lane is wrong, as input for `graze check`.
   lanes: {
     lane: string;
@@ -105,7 +105,7 @@ export interface Choices {
   pareto: Pareto | null;
   discrepancy: Discrepancy | null;
 }
-// How the values of the lanes differ: sentences, and the page with every value.
+// How the values of lanes differ: sentences, and the page with every value.
 export interface Discrepancy {
   sentences: string[];
   page: string;
@@ -144,7 +144,7 @@ export interface Report {
     exact: boolean;
   }[];
   answer: string[]; // sentences, the most useful first; shown if costs are unknown
-  groups: { id: string; describes: string; strata: number[] }[]; // strata that are reported together, by their index
+  groups: { id: string; describes: string; strata: number[] }[]; // strata that are reported together; their indices
   // One row for each lane and stratum that has pairs, and one for each lane over all strata (stratum null).
   rates: {
     lane: number;
@@ -157,7 +157,7 @@ export interface Report {
     stored?: number; // pairs of doubles on which the lane is wrong because float32 stores another pair
   }[];
   group_rates: { lane: number; group: number; wrong: Share; false_positive?: Share; false_negative?: Share }[];
-  // Pairs of lanes of one algorithm. `differs` counts pair by pair if known, otherwise it is null. A null stratum means
+  // Pairs of lanes of one algorithm. `differs` is a count pair by pair; null if that is unknown. A null stratum means
   // all strata together, as in `rates`.
   side_by_side: {
     kind: 'cpu-nofma' | 'nofma-fma' | 'f32-f64';
@@ -189,9 +189,10 @@ export interface Report {
   }[];
   // kind scale: by the exponent of the largest coordinate; offset: by log2(largest coordinate / extent of the pair);
   // …/f64: the same on pairs of doubles. A cell stands for exponents [exponent, exponent + step); cells without pairs
-  // are absent. origin: the exponent nearest to 0 that has enough pairs to compare with; null if none has. says: the
-  // exponents up to which the lane is as right as at the origin. times, if the lane errs in the cell: the ratio of the
-  // cell's share to the origin's, with a lower and an upper bound from both 95 % intervals; null for a division by 0.
+  // are absent. origin: the exponent nearest to 0 that has enough pairs to compare with; null if there is none. says:
+  // the exponents up to which the lane is as right as at the origin. times, if the lane errs in the cell: the ratio of
+  // the cell's share to the origin's, with a lower and an upper bound from both 95 % intervals; null for a division by
+  // 0.
   extremes: {
     kind: 'scale' | 'offset' | 'scale/f64' | 'offset/f64';
     step: number;
@@ -200,7 +201,7 @@ export interface Report {
     origin: number | null;
     says: string;
   }[];
-  signature_count: number; // the number of all signatures; `signatures` has the most frequent signatures
+  signature_count: number; // all signatures; `signatures` has the most frequent ones
   signatures: {
     // one for each signature that fits, most frequent first
     key: string;
@@ -213,7 +214,7 @@ export interface Report {
     nesting?: 'a_in_b' | 'b_in_a' | 'same'; // which triangle lies in the other
     margin: string; // "-2^-3", "0", "2^4" ulps
     marks: string; // one character ('.' '+' '-' '?') for each lane of the algorithm, in the order of `lanes`
-    cards: number[]; // indices in `cards` of the signature's kinds, most frequent first
+    cards: number[]; // the signature's kinds: indices in `cards`, most frequent first
     pairs: string[]; // kept pairs, such as "near_edge_edge:1:42"
   }[];
   sources: { [algorithm: string]: string }; // replaces "@SOURCE@" in the snippets of the algorithm's cards
@@ -226,8 +227,8 @@ export interface Report {
     coordinates: 'f32' | 'f64';
     pair: { decimal: string[]; hex: string[]; value: number[] }; // 18 each, a[0].x … b[2].z
     truth: { verdict: string; contact: string; margin: number; margin_ulps: number };
-    // For the drawing, in double from exact values: the points of the common set, and the line where the planes meet,
-    // clipped to the pair's enlarged box.
+    // For the drawing, in double, rounded from exact values: the points of the common set, and the line where the
+    // planes meet, clipped to the pair's enlarged box.
     drawing: { contact: number[][]; planes_line: number[][] }; // 0, 1, 2 or more points; 0 or 2 points
     verdicts: { lane: number; verdict: 'disjoint' | 'intersects' | 'declined'; wrong: boolean }[]; // all that ran
     sentences: string[]; // explain's sentences; those about lanes of the kind come first
@@ -244,13 +245,13 @@ export interface Report {
     commands: { label: string; text: string }[]; // "repro", "explain", "minimize"
     snippets: { label: string; text: string }[]; // "cpp", "python", …; may be empty to save space
   }[];
-  missing: string[]; // sentences about what this report lacks (not minimised, no maps, …)
+  missing: string[]; // sentences on what this report lacks (not minimised, no maps, …)
   compare: Compare | null;
 }
 
-// How verdicts change with the toolchain. A row has a cell for each variant that ran; differs: the share
-// that differs from the reference's verdicts, null if not counted. agree: groups of variants with the same verdicts on
-// every pair of every row.
+// How verdicts change with the toolchain. A row has a cell for each variant that ran. differs: the share of verdicts
+// that differ from the reference's; null if not counted. agree: groups of variants with the same verdicts on every pair
+// of every row.
 export interface ToolchainMap {
   reference: string;
   variants: string[];
@@ -275,7 +276,7 @@ export interface FailureKind {
   intersecting: number; // pairs that intersect; wrong verdicts on these are false negatives
   signatures: number;
   lanes: string[]; // ids of the lanes that fail in this way on some pair of the kind
-  settled: [number, number]; // lanes whose cause passed the audit, and lanes that the audit could check
+  settled: [number, number]; // numbers of lanes whose cause passed the audit, and of lanes that it could check
   strata: { [id: string]: number }; // kept pairs by stratum; at most four for each signature
   margins: { [bucket: string]: number }; // all pairs of the kind by margin; "-2^-3", "0", "+2^4" ulps
   worst: { case: string; pair: string; from: string; margin_ulps: number }; // pair: 18 hex floats
@@ -286,7 +287,7 @@ export interface ChangedVerdicts {
   stratum: string;
   pairs: number;
   known: string; // same, changed, unknown
-  least: number; // least and most: bounds of the number of changed verdicts
+  least: number; // least and most: bounds on the number of changed verdicts
   most: number;
   broken?: number; // became wrong; only if both versions of the code decided the pairs again
   mended?: number; // became right
@@ -304,8 +305,8 @@ export interface Compare {
     stratum: string;
     before: Share; // wrong
     after: Share;
-    changed: boolean; // more than chance explains; on the same pairs, at all
-    unseen?: number | null; // a smaller difference could pass for chance; absent on the same pairs
+    changed: boolean; // by more than chance; on the same pairs, by any amount
+    unseen?: number | null; // a smaller difference could be chance; absent on the same pairs
     errors: { error: string; before: Share; after: Share }[]; // kinds of error that changed: "false positives", …
   }[];
   gained: { key: string; signatures: number; count: number }[]; // kinds, with their signatures and pairs

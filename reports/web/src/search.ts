@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The syntax of the search fields: every word must match; a word with an asterisk is a pattern for a whole name.
+// The syntax of the search fields: every word must match; a word with an asterisk is a pattern for the whole name.
 
 function test_of(word: string): (text: string) => boolean {
   if (!word.includes('*')) return (text) => text.includes(word);

@@ -43,7 +43,7 @@ function differs_cell(differs: Share | null, must_be_equal: boolean) {
   );
 }
 
-// The part that the names of the two lanes have in common.
+// The common part of the two lanes' names.
 const common = (report: Report, side: Side) => {
   const [left, right] = [report.lanes[side.left], report.lanes[side.right]];
   return side.kind === 'f32-f64' ? `${left.algorithm}, ${left.target}` : `${left.algorithm}/${right.scalar}`;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's choices, kept in the URL's fragment so that links, reloads and Back restore them.
-// "#kind-7&find=moller+f64" is a place and the filters. A link with only a place keeps the filters. A pair in the
-// viewer (card_viewer.ts) is not a filter: "#kind-7&p=…&by=…".
+// "#kind-7&find=moller+f64" is a place, followed by the filters. A link that has only a place keeps the filters. A pair
+// in the viewer (card_viewer.ts) is not a filter: "#kind-7&p=…&by=…".
 
 let place = '';
 let entered = false; // the viewer was opened from the history entry before this one
@@ -10,7 +10,7 @@ const kOfTheViewer = ['p', 'by'];
 const listeners: (() => void)[] = [];
 const announce = () => listeners.forEach((changed) => changed());
 
-// Our own history entries have a state, which distinguishes Back from a click on a link.
+// Only our own history entries have a state, so Back can be told from a click on a link.
 const is_own = () => (history.state as { graze?: boolean } | null)?.graze === true;
 
 function read() {
@@ -46,7 +46,7 @@ function visit(id: string, more: Record<string, string>) {
   announce();
 }
 
-// Shows the element with that id, as a click on a link does, and sets additional choices.
+// Shows the element with that id, as a click on a link would, and sets additional choices.
 export function go_to(id: string, more: Record<string, string> = {}) {
   visit(id, more);
   document.getElementById(id)?.scrollIntoView({ block: 'start' });

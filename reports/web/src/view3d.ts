@@ -148,7 +148,7 @@ export function picture(shape: Shape): Picture {
     overlay(context, view_of(camera), width, height, ratio);
   }
 
-  // Draws the names of the vertices, and a contact that is a point.
+  // Draws the names of the vertices, and the contact if it is a point.
   function overlay(context: CanvasRenderingContext2D, view: View, width: number, height: number, ratio: number) {
     context.save();
     context.scale(ratio, ratio);

@@ -3,7 +3,7 @@ import { expect, open_card, pixels, test } from './page';
 
 test.describe('by WebGL', () => {
   test.use({ webgl: true });
-  test('the drawing turns by dragging and by keys, and comes back', async ({ page }) => {
+  test('dragging and keys turn the drawing, and it can be reset', async ({ page }) => {
     const card = await open_card(page, 1);
     const board = card.locator('.board');
     await expect(board).not.toHaveClass(/flat/); // drawn by WebGL
@@ -29,7 +29,7 @@ test.describe('by WebGL', () => {
     expect(await pixels(board.locator('canvas'))).toBe(still);
   });
 
-  test('every card draws, with one WebGL context for all', async ({ page, report }) => {
+  test('every card has a drawing, all from one WebGL context', async ({ page, report }) => {
     await page.setViewportSize({ width: 400, height: 400 }); // small drawings
     await page.locator('button', { hasText: 'Open all' }).click();
     for (let number = 1; number <= report.cards.length; ++number) {
@@ -49,7 +49,7 @@ test.describe('by WebGL', () => {
   });
 });
 
-test('a card says what the report says', async ({ page, report }) => {
+test('a card agrees with the report', async ({ page, report }) => {
   const number =
     1 +
     Math.max(
@@ -90,7 +90,7 @@ test('commands, coordinates and snippets are copied', async ({ page, report }) =
   }
 });
 
-test('without WebGL the drawing is an SVG, and turns', async ({ page }) => {
+test('without WebGL, the drawing is an SVG that turns', async ({ page }) => {
   const card = await open_card(page, 1);
   const svg = card.locator('.paper svg');
   await expect(card.locator('.board')).toHaveClass(/flat/);

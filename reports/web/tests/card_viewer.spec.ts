@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests a card's case in the viewer, over the report.
+// Tests the viewer that a card opens over the report.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -30,12 +30,12 @@ async function expect_verdicts_of(page: Page, report: Report, number: number) {
     );
   const stored = verdicts
     .map(({ lane, verdict, wrong }) => [report.lanes[lane].id, `${wrong ? 'wrong' : 'right'}: ${verdict}`] as const)
-    .filter(([lane]) => lane in shown); // the viewer has no lanes cpu-fma, for example
+    .filter(([lane]) => lane in shown); // the viewer has no cpu-fma lanes, for example
   expect(stored.length).toBeGreaterThan(10);
   expect(shown).toMatchObject(Object.fromEntries(stored));
 }
 
-test('a card opens in the viewer, says there what it says here, and back again', async ({ page, report }) => {
+test('the viewer opens on a card, agrees with the card, and leads back', async ({ page, report }) => {
   const { lanes } = (JSON.parse((await page.locator('#view').textContent())!) as { f32: Stored }).f32.replay;
   const in_viewer = (card: Report['cards'][number]) => card.kind.lanes.some((lane) => lanes.includes(lane));
   const first = 1 + report.cards.findIndex(in_viewer),
@@ -66,7 +66,7 @@ test('a card opens in the viewer, says there what it says here, and back again',
   await page.keyboard.press('h'); // keys do nothing while the viewer is closed
   await expect(page.locator('#help')).toBeHidden();
   if (without > 0) {
-    // opens another card in the same viewer
+    // open another card in the same viewer
     await open_card(page, without);
     await open_button(page, without).click();
     await expect_verdicts_of(page, report, without);
@@ -78,7 +78,7 @@ test('a card opens in the viewer, says there what it says here, and back again',
   }
 });
 
-test('cards of both coordinate types open, each as its own', async ({ page }) => {
+test('cards of both coordinate types open in the viewer', async ({ page }) => {
   await page.goto(doubles_url());
   const report = JSON.parse((await page.locator('#report').textContent())!) as Report;
   const parts = JSON.parse((await page.locator('#view').textContent())!) as Record<string, Stored>;
@@ -110,7 +110,7 @@ test('cards of both coordinate types open, each as its own', async ({ page }) =>
   }
 });
 
-test('a link leads into the viewer on a phone, changed pair and all, and from there to its card', async ({ page }) => {
+test('on a phone, a link opens the viewer with its changed pair, and Back leads to the card', async ({ page }) => {
   await page.setViewportSize({ width: 390, height: 844 });
   await open_card(page, 1);
   await open_button(page, 1).click();
@@ -133,7 +133,7 @@ test('a link leads into the viewer on a phone, changed pair and all, and from th
   expect(page.url()).toMatch(/#kind-1$/);
 });
 
-unwatched('without the module no card has the button, and the page says so', async ({ page }) => {
+unwatched('without the module, no card has the button, and the page explains why', async ({ page }) => {
   const altered = join(dirname(process.env.GRAZE_REPORT!), 'without_viewer.html');
   writeFileSync(
     altered,

@@ -6,7 +6,7 @@ import { expect, pixels, test } from './page';
 
 const kLines = '#margin-chart svg g[data-mark="line"] path';
 
-// On the log axis, a lane has a line on each side of zero where it was wrong at least once.
+// On the log axis, a lane has a line on each side of zero on which it was wrong at least once.
 const lines_of = (report: Report, shown: (lane: Report['lanes'][number]) => boolean) =>
   report.margins
     .filter((row) => row.stratum === null && shown(report.lanes[row.lane]))
@@ -35,7 +35,7 @@ test('errors against margin: one line for each lane, thresholds with their bound
   expect(titles.filter((title) => title.includes('no error in'))).toHaveLength(certified.length);
 });
 
-test('lanes are picked, and the share is drawn on either axis', async ({ page, report }) => {
+test('lanes can be chosen, and the share is drawn on either axis', async ({ page, report }) => {
   await page.locator('#margin-chart').scrollIntoViewIfNeeded();
   const drawn = await pixels(page.locator('#margin-chart'));
   await page.locator('#margins .chips button', { hasText: /^f64$/ }).click();
@@ -46,14 +46,14 @@ test('lanes are picked, and the share is drawn on either axis', async ({ page, r
   await expect(page.locator('#margin-chart')).toContainText('50 %');
 });
 
-test('pointing at the chart tells the lane, the margin and the interval', async ({ page }) => {
+test('pointing at the chart shows the lane, the margin and the interval', async ({ page }) => {
   await page.locator('#margin-chart').scrollIntoViewIfNeeded();
   const box = (await page.locator('#margin-chart svg').first().boundingBox())!;
   await page.mouse.move(box.x + 0.56 * box.width, box.y + 0.15 * box.height, { steps: 5 });
   await expect(page.locator('#margin-chart g[aria-label="tip"]')).toContainText('95 %');
 });
 
-test('trust is asked for a group of strata or a stratum', async ({ page, report }) => {
+test('thresholds can be shown for a group of strata or a stratum', async ({ page, report }) => {
   const shown = async () => (await page.locator('.thresholds tbody tr').allInnerTexts()).map((row) => row.split(/\t/));
   const words = (t: Threshold) =>
     t.exponent !== null
@@ -84,7 +84,7 @@ test('trust is asked for a group of strata or a stratum', async ({ page, report 
   await expect(trust).toHaveValue(`stratum ${report.strata[1].id}`);
 });
 
-test('extremes: a cell for every exponent that has pairs, thin where they are few', async ({ page, report }) => {
+test('extremes: a cell for every exponent with pairs, thin if they are few', async ({ page, report }) => {
   for (const kind of ['scale', 'offset'] as const) {
     const rows = report.extremes.filter((row) => row.kind === kind && report.lanes[row.lane].target === 'cpu');
     const cells = rows.reduce((sum, row) => sum + row.cells.length, 0);
@@ -109,14 +109,14 @@ test('extremes: a cell for every exponent that has pairs, thin where they are fe
   }
 });
 
-test('shades of extremes tell ratios apart, from once to 32 times as often', () => {
+test('shades of extremes differ for ratios from 1 to 32', () => {
   const shades = [1, 1.5, 2, 4, 8, 16, 32].map(times_fill);
   expect(new Set(shades).size).toBe(shades.length);
   expect([0, 0.5, 1].map(times_fill)).toEqual(Array(3).fill(times_fill(1)));
   expect(times_fill(1000)).toBe(times_fill(32));
 });
 
-test('each lane has its words on scale, offset, flatness and needles', async ({ page, report }) => {
+test('each lane has a text on scale, offset, flatness and needles', async ({ page, report }) => {
   const rows = page.locator('#extremes .reach tbody tr');
   const lanes = report.lanes.flatMap((lane, i) => (lane.target === 'cpu' ? [i] : []));
   await expect(rows).toHaveCount(lanes.length);

@@ -10,7 +10,7 @@ const choices = async (page: Page) =>
     pareto: NonNullable<Choices['pareto']>;
   };
 
-test('the front is the first picture: a dot for each lane, and a press leads to its row', async ({ page }) => {
+test('the front is the first picture: a dot for each lane, which leads to its row', async ({ page }) => {
   const { pareto } = await choices(page);
   expect(await page.locator('main figure').first().getAttribute('id')).toBe('front');
   await expect(page.locator('#front-chart svg g[data-mark="dot"] circle')).toHaveCount(pareto.lanes.length);
@@ -27,7 +27,7 @@ test('the front is the first picture: a dot for each lane, and a press leads to 
   ).toHaveCount(1);
 });
 
-test('the slider tells what each tolerance does, and names the lane under it', async ({ page }) => {
+test('the slider shows what each tolerance does and the lane under it', async ({ page }) => {
   const { tuned } = await choices(page);
   const readout = page.locator('#tuning output'),
     slider = page.locator('#tuning input[type=range]');
@@ -47,7 +47,7 @@ test('the slider tells what each tolerance does, and names the lane under it', a
   await expect(readout).toContainText('abs:');
 });
 
-test('the pictures do not stick out on a phone', async ({ page }) => {
+test('the pictures fit on a phone', async ({ page }) => {
   await page.setViewportSize({ width: 360, height: 740 });
   await page.locator('#tuning-chart').scrollIntoViewIfNeeded();
   await page.waitForTimeout(200);

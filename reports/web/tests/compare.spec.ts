@@ -6,7 +6,7 @@ import { percent } from '../src/format';
 import type { Report } from '../src/report';
 import { compare_url } from './page';
 
-test('toolchains: what differs, what is wrong, and who agrees', async ({ page }) => {
+test('toolchains: differences, wrong verdicts, and groups that agree', async ({ page }) => {
   test.skip(!process.env.GRAZE_COMPARE, 'GRAZE_REPORT names a single report');
   await page.goto(compare_url());
   const { toolchains } = JSON.parse((await page.locator('#report').textContent())!) as Report;
@@ -30,7 +30,7 @@ test('toolchains: what differs, what is wrong, and who agrees', async ({ page })
   expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(375);
 });
 
-test('two campaigns compared: what changed on top, rates, kinds gained and lost', async ({ page }) => {
+test('two campaigns compared: a headline, rates, kinds gained and lost', async ({ page }) => {
   test.skip(!process.env.GRAZE_COMPARE, 'GRAZE_REPORT names a single report');
   const said: string[] = [];
   page.on('console', (message) => said.push(message.text()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choices affect rows and cards, are stored in the URL, and are restored from it.
+// Choices filter rows and cards, are stored in the URL, and are restored from it.
 import type { Page } from '@playwright/test';
 import { kept_pairs, type Cell } from '../src/pairs_of_cell';
 import type { Report } from '../src/report';
@@ -26,7 +26,7 @@ function find_cell(report: Report, is: (kept: number, count: number) => boolean)
   return undefined;
 }
 
-test('a search takes all words, and patterns of whole names', () => {
+test('a search needs all its words, and patterns match whole names', () => {
   const found = (query: string, name: string) => matcher(query)([name]);
   expect(found('moller f64', 'moller_1997/f64/cpu')).toBe(true);
   expect(found('f64  Moller', 'moller_1997/f64/cpu')).toBe(true);
@@ -37,7 +37,7 @@ test('a search takes all words, and patterns of whole names', () => {
   expect(found('', 'anything')).toBe(true);
 });
 
-test('the league table finds lanes by words and patterns, again after a reload', async ({ page, report }) => {
+test('the league table finds lanes by words and patterns, even after a reload', async ({ page, report }) => {
   const search = page.locator('#league input[type=search]');
   await search.fill('moller f64');
   await expect(names(page)).toHaveText(
@@ -59,7 +59,7 @@ test('the league table finds lanes by words and patterns, again after a reload',
   await expect(names(page)).toHaveText(kept);
 });
 
-test('the filters reach cards and signatures, again after a reload', async ({ page, report }) => {
+test('the filters apply to cards and signatures, even after a reload', async ({ page, report }) => {
   const shown = page.locator('.card:not([hidden])'),
     rows = page.locator('.signatures tbody tr');
   const search = page.locator('#kinds input[type=search]');
@@ -112,7 +112,7 @@ test('#kind-N opens that card', async ({ page }) => {
   await expect(page.locator('#kind-5 summary').first()).toBeInViewport();
 });
 
-test('a cell leads to the pairs kept of it', async ({ page, report }) => {
+test('a cell leads to its kept pairs', async ({ page, report }) => {
   const cell = find_cell(report, (kept) => kept > 0)!;
   const at = cell_at(page, report, cell);
   await at.locator('[data-kind=false_negative]').click();
@@ -140,7 +140,7 @@ test('a cell leads to the pairs kept of it', async ({ page, report }) => {
   await expect(page.locator('.card:not([hidden])')).toHaveCount(report.cards.length);
 });
 
-test('a cell without a kept pair gives the command, one without errors says so', async ({ page, report }) => {
+test('a cell without kept pairs shows the command; one without errors, a message', async ({ page, report }) => {
   const lost = find_cell(report, (kept, count) => kept === 0 && count > 0);
   if (lost) {
     await cell_at(page, report, lost).locator('[data-kind=false_negative]').click();
@@ -162,7 +162,7 @@ test('a cell without a kept pair gives the command, one without errors says so',
   await expect(page.locator('.cell-note')).toContainText('wrong verdicts on');
 });
 
-test('the heads of the league table stay', async ({ page }) => {
+test('the headings of the league table stay in view', async ({ page }) => {
   await page.locator('.league').scrollIntoViewIfNeeded();
   const scroller = page.locator('#league .scroller');
   await scroller.evaluate((element) => (element.scrollTop = element.scrollHeight));
@@ -171,7 +171,7 @@ test('the heads of the league table stay', async ({ page }) => {
   await expect(page.locator('.league tbody tr').last()).toBeInViewport();
 });
 
-test('where lanes of a device fail, a card has their program', async ({ report }) => {
+test('if device lanes fail, a card has their program', async ({ report }) => {
   const fails_on = (card: Report['cards'][number], device: boolean) =>
     card.verdicts.some(
       ({ lane, wrong }) =>
@@ -181,8 +181,8 @@ test('where lanes of a device fail, a card has their program', async ({ report }
     );
   const has = (card: Report['cards'][number], program: string) => card.snippets.some(({ label }) => label === program);
   for (const card of report.cards) {
-    // On the pair shown, some lanes of the subject may fail for a reason other than the kind's. Then the card may lack
-    // a program.
+    // On the pair shown, some lanes of the subject may fail for another reason than the kind's. Then a program may be
+    // missing from the card.
     const mixed = card.verdicts.some(
       ({ lane, wrong }) =>
         wrong && report.lanes[lane].algorithm === card.kind.subject && !card.kind.lanes.includes(report.lanes[lane].id),

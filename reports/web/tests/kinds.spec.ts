@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A card's title, sentence, lanes, table and histograms describe its kind without contradiction.
+// A card's title, sentence, lanes, table and histograms describe its kind consistently.
 import { expect, open_card, test } from './page';
 
 const place_of = (line: string) => line.split('/').at(-1)!;
 
-// The report has cards with and without a source line, and cards with a settled and with an unsettled cause.
-test('the cards have all sorts of kinds', async ({ report }) => {
+// The report must have cards with and without a source line, and with a settled and an unsettled cause.
+test('the cards cover all sorts of kinds', async ({ report }) => {
   const kinds = report.cards.map(({ kind }) => kind);
   expect(kinds.some(({ line }) => line) && kinds.some(({ line }) => !line)).toBe(true);
   expect(kinds.some(({ settled: [yes, of] }) => yes < of) && kinds.some(({ settled: [yes, of] }) => yes === of)).toBe(
@@ -57,7 +57,7 @@ test('title, sentence, lanes and verdicts of a card do not contradict each other
     expect(first).toBe(sentences[0]);
     expect(first.startsWith(`${kind.subject}/`), first).toBe(true);
     expect(first).toContain(kind.line);
-    // The table marks exactly those lanes of the kind that the card calls wrong on the pair shown.
+    // The table must mark exactly those lanes of the kind that the card calls wrong on the pair shown.
     const said = card.all[0].split(', ').map((lane) => `${kind.subject}/${lane}`);
     expect(said).toEqual(kind.lanes);
     const claimed = card.here.length > 0 ? card.here[0].split(', ').map((lane) => `${kind.subject}/${lane}`) : said;
@@ -83,7 +83,7 @@ test('title, sentence, lanes and verdicts of a card do not contradict each other
   expect(partly).toBeLessThan(report.cards.length);
 });
 
-test('the histograms say their numbers, which add up, and draw them', async ({ page, report }) => {
+test('the histograms show their numbers, which add up', async ({ page, report }) => {
   const with_sides = report.cards.findIndex(({ kind }) =>
     ['-', '0', '+'].every((sign) => Object.keys(kind.margins).some((bucket) => bucket.startsWith(sign))),
   );

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the pages under test with the graze that GRAZE names: a minimised campaign, a smaller comparison with the same
-// parts but fewer rows, a campaign with doubles, and pages of the viewer. GRAZE_REPORT and GRAZE_COMPARE name existing
-// pages to use instead.
+// Makes the pages under test with the graze program that GRAZE names: a minimised campaign, a smaller comparison with
+// the same parts but fewer rows, a campaign with doubles, and pages of the viewer. GRAZE_REPORT and GRAZE_COMPARE name
+// existing pages to use instead.
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

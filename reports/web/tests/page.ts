@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page under test. In every test it must fetch nothing and leave the console clean.
+// The page under test. In every test, it must not fetch anything or write to the console.
 import { pathToFileURL } from 'node:url';
 import AxeBuilder from '@axe-core/playwright';
 import { expect, test as base, type Locator, type Page } from '@playwright/test';
@@ -33,7 +33,7 @@ export const test = base.extend<{ webgl: boolean; report: Report; costs: Costs |
 
 export { expect };
 
-// Returns: a check that the page has fetched only these addresses and written nothing to the console since this call.
+// Returns: a check that, since this call, the page has fetched only these addresses and written nothing to the console.
 export function watch(page: Page, addresses: string[]) {
   const fetched: string[] = [],
     said: string[] = [];
@@ -49,7 +49,7 @@ export function watch(page: Page, addresses: string[]) {
   };
 }
 
-// What axe finds on the page, or in a part of it.
+// The violations that axe finds on the page, or in a part of it.
 export async function violations(page: Page, part = 'html') {
   const found = await new AxeBuilder({ page }).include(part).analyze();
   return found.violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(' ')}`);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// node tests/screens.mjs PAGE.html DESKTOP.png PHONE.png: the docs' pictures of the first screen of a report or a
+// node tests/screens.mjs PAGE.html DESKTOP.png PHONE.png: screenshots for the documents of the top of a report or a
 // viewer.
 import { execSync } from 'node:child_process';
 import { resolve } from 'node:path';

@@ -24,7 +24,7 @@ test('the league table holds the report’s numbers, with intervals', async ({ p
   await expect(page.locator('#league .readout')).toHaveText(title);
 });
 
-test('a campaign of both coordinate types has a switch, and says what storing costs', async ({ page }) => {
+test('a campaign of both coordinate types has a switch, and shows errors due to storing', async ({ page }) => {
   test.skip(!process.env.GRAZE_DOUBLES, 'no such campaign');
   await expect(page.locator('#league label', { hasText: 'Coordinates' })).toHaveCount(0); // only float32
   await page.goto(doubles_url());
@@ -100,7 +100,7 @@ test('the arrow keys walk through the cells', async ({ page }) => {
   await expect(page.locator('#league .readout')).toContainText('false negatives');
 });
 
-test('cells can be read on their colour', async ({ page }) => {
+test('cells are readable on their colour', async ({ page }) => {
   const worst = await page.locator('.rate span').evaluateAll((spans) => {
     const luminance = (colour: string) => {
       const [r, g, b] = colour
@@ -121,7 +121,7 @@ test('cells can be read on their colour', async ({ page }) => {
   expect(worst).toBeGreaterThanOrEqual(4.5);
 });
 
-test('the CPU and CUDA without contraction are shown as equal where they are', async ({ page, report }) => {
+test('equal results of the CPU and CUDA without contraction are shown as equal', async ({ page, report }) => {
   const rows = report.side_by_side.filter((side) => side.kind === 'cpu-nofma');
   const differ = rows.filter((side) => side.strata.some((entry) => entry.stratum === null && entry.differs?.count));
   const table = page.locator('#side-by-side .beside-one').first();
@@ -162,7 +162,7 @@ test('signatures sort and filter, and lead to their kinds', async ({ page, repor
   await expect(page.locator(`#kind-${last} .truth`).first()).toBeInViewport();
 });
 
-test('what goes on behind the right edge of the league table fades out there', async ({ page }) => {
+test('the league table fades out at its right edge if it continues there', async ({ page }) => {
   const table = page.locator('#league .scroller');
   const mask = () => table.evaluate((one) => getComputedStyle(one).maskImage);
   await page.setViewportSize({ width: 390, height: 844 });

@@ -9,7 +9,7 @@ import type { Costs, Report } from '../src/report';
 
 const here = dirname(fileURLToPath(import.meta.url));
 
-// The part of a file that the page gets: everything except the checksum.
+// The part of a file that the page receives: everything except the checksum.
 function parsed(file: string) {
   const value = JSON.parse(readFileSync(file, 'utf8'));
   expect(value.checksum).toMatch(/^[0-9a-f]{16}$/);
@@ -19,7 +19,7 @@ function parsed(file: string) {
 
 const read = (page: string) => parsed(page.replace(/html$/, 'json')) as Report;
 
-// The compiler's errors for each value against its type. One run checks all values, because a run takes seconds.
+// The compiler's errors for each value against its type. One run checks all values, because each run takes seconds.
 function complaints(values: Record<string, [type: string, value: unknown]>, info: TestInfo): Record<string, string> {
   const rows = Object.entries(values).map(
     ([name, [type, value]]) => `export const ${name}: ${type} = ${JSON.stringify(value)};\n`,
@@ -63,7 +63,7 @@ function complaints(values: Record<string, [type: string, value: unknown]>, info
 
 const beside = (name: string) => parsed(process.env.GRAZE_REPORT!.replace(/report.html$/, name));
 
-test('real reports, costs and choices are what report.ts says', ({}, info) => {
+test('real reports, costs and choices match report.ts', ({}, info) => {
   const { GRAZE_REPORT, GRAZE_COMPARE } = process.env;
   const campaign = read(GRAZE_REPORT!),
     compared = GRAZE_COMPARE ? read(GRAZE_COMPARE) : null,
@@ -87,7 +87,7 @@ test('real reports, costs and choices are what report.ts says', ({}, info) => {
   for (const [name, said] of Object.entries(found)) expect(said, name).toBe('');
 });
 
-test('and others are told apart', ({}, info) => {
+test('values of other types are rejected', ({}, info) => {
   const whole = read(process.env.GRAZE_REPORT!),
     costs = beside('costs.json'),
     [tuned, pareto] = [beside('tune.json'), beside('pareto.json')];

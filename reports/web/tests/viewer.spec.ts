@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of `graze view` must fetch nothing, leave the console clean, and agree with the native build.
+// The page of `graze view` must not fetch anything or write to the console, and must agree with the native build.
 import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
@@ -27,20 +27,20 @@ const kEndsApart =
 const kOverflow =
   'd01cb3ffcf1130a24fd0e03dd0111e894fc5fbfb4fb67a05cee82f564ea92d6bce58537dceb4244ccf02f27ccf8846bbcf581c374eb351f54dda496bcec4d16a4f5f9694ce41af95'; // extreme_scale:1:2
 
-// Opens the address as a new page, because a change of only the hash would race with the page's own changes of it.
+// Opens the address as a new page: if only the hash changed, that would race with the page's own changes of the hash.
 async function open_afresh(page: Page, address: string) {
   await page.goto('about:blank');
   await page.goto(address);
 }
 
-test('it checks itself by stored verdicts, and says on how many pairs', async ({ viewer }) => {
+test('it checks itself against stored verdicts, and shows on how many pairs', async ({ viewer }) => {
   const said = (await viewer.locator('#replayed').textContent())!;
   const [, pairs, lanes] = /^Same as the native build on (\d+) pairs, (\d+) lanes each\.$/.exec(said)!.map(Number);
   expect(pairs).toBeGreaterThan(300);
   expect(await viewer.locator('[data-lane]').count()).toBe(lanes);
 });
 
-test('where a verdict differs from the stored one it shows none', async ({ page }) => {
+test('it shows no verdicts if one differs from the stored one', async ({ page }) => {
   test.skip(!file());
   const altered = join(dirname(file()), 'altered.html'),
     text = readFileSync(file(), 'utf8'),
@@ -56,7 +56,7 @@ test('where a verdict differs from the stored one it shows none', async ({ page 
   await expect(page.locator('[data-lane]')).toHaveCount(0);
 });
 
-test('a notebook shows it in a frame that has no address', async ({ page }) => {
+test('it works in a notebook’s frame, which has no address', async ({ page }) => {
   test.skip(!file());
   await page.addInitScript(without_webgl);
   await page.setContent('<iframe style="width: 100%; height: 560px"></iframe>');
@@ -67,7 +67,7 @@ test('a notebook shows it in a frame that has no address', async ({ page }) => {
   await expect(inside.locator('[data-lane]').first()).toBeVisible();
 });
 
-test('it says what graze check says', async ({ viewer }) => {
+test('it agrees with graze check', async ({ viewer }) => {
   for (let pair = 0; pair < 3; ++pair) {
     const { truth } = await expect_as_checked(viewer);
     if (truth.contact !== 'none') await expect(viewer.locator('#truth')).toContainText(`contact: ${truth.contact}`);
@@ -75,7 +75,7 @@ test('it says what graze check says', async ({ viewer }) => {
   }
 });
 
-test('a pair on which CPU and GPU differ: which lane, and why', async ({ viewer }) => {
+test('for a pair on which CPU and GPU differ, it shows which lane, and why', async ({ viewer }) => {
   await open_afresh(
     viewer,
     `${url()}#p=3dcccccd3e4ccccd3e99999a3ecccccd3f6666663e4ccccd3f3333333dcccccd3f19999a3dcccccd3e4ccccd3e99999a3f0000003f0000003f666666be99999a3f4ccccd3ecccccd`,
@@ -116,7 +116,7 @@ test('a pair on which CPU and GPU differ: which lane, and why', async ({ viewer 
   await expect(viewer.locator('#why-title')).toHaveText('Why does guigue_devillers_2003/f32/cpu say disjoint?');
 });
 
-test('what it says of a contraction is what graze explain finds', async ({ viewer }) => {
+test('its explanations of contractions agree with graze explain', async ({ viewer }) => {
   test.slow();
   await viewer.getByLabel('Pairs of').selectOption('near_edge_edge');
   let compared = 0;
@@ -158,7 +158,7 @@ test('what it says of a contraction is what graze explain finds', async ({ viewe
   expect(compared).toBeGreaterThan(0);
 });
 
-test('ranges on a line are those by which the lane decides, and the axis is the margin’s', async ({ viewer }) => {
+test('it shows the ranges on a line by which the lane decides, and the margin’s axis', async ({ viewer }) => {
   const seen: Record<string, number> = {};
   for (let pair = 0; pair < 2; ++pair) {
     await to_another_pair(viewer, () => viewer.keyboard.press('Shift+n'));
@@ -218,7 +218,7 @@ test('ranges on a line are those by which the lane decides, and the axis is the 
   expect(await viewer.locator('#ranges svg rect').count()).toBeGreaterThan(3);
 });
 
-test('a query is shown with all triangles, its hits and what a lane gets wrong', async ({ page }) => {
+test('a query is shown with all triangles, its hits and a lane’s errors', async ({ page }) => {
   test.skip(!file(), 'this build has no viewer');
   const folder = dirname(file()),
     kSide = 24,
@@ -261,7 +261,7 @@ test('a query is shown with all triangles, its hits and what a lane gets wrong',
 
 test.describe('by WebGL', () => {
   test.use({ webgl: true });
-  test('dragging a vertex decides anew, says what changed, and is one step to undo', async ({ viewer }) => {
+  test('dragging a vertex updates verdicts, announces changes, and is undone in one step', async ({ viewer }) => {
     await viewer.setViewportSize({ width: 700, height: 450 }); // fewer places to try below
     await viewer.keyboard.press('t');
     await viewer.locator('button', { hasText: 'Take a hit' }).click();
@@ -302,7 +302,7 @@ test('a changed verdict is announced', async ({ viewer }) => {
   await expect(viewer.locator('#flips')).toHaveAttribute('aria-live', 'polite');
 });
 
-test('coordinates are typed, pasted, refused; the pair is in the link', async ({ viewer }) => {
+test('coordinates can be typed and pasted, errors are shown, and the link has the pair', async ({ viewer }) => {
   await coordinate(viewer, 4).fill('0x1.8p+1');
   await coordinate(viewer, 4).blur();
   await expect(coordinate(viewer, 4)).toHaveValue('3');
@@ -328,7 +328,7 @@ test('coordinates are typed, pasted, refused; the pair is in the link', async ({
   });
 });
 
-test('the ulp map is drawn whole, and a cell gives its pair', async ({ viewer }) => {
+test('the ulp map is drawn completely, and a cell loads its pair', async ({ viewer }) => {
   const told = viewer.locator('#map-told');
   await viewer.locator('#map').scrollIntoViewIfNeeded();
   await expect(told).toContainText(/^256 × 256 cells of \d lanes and the truth, decided in \d+ ms$/, {
@@ -351,7 +351,7 @@ test('the ulp map is drawn whole, and a cell gives its pair', async ({ viewer })
   expect(kCells).toBe(await lane.evaluate((canvas: HTMLCanvasElement) => canvas.width));
 });
 
-test('tolerances are decided too: filtered is right everywhere but for logic', async ({ viewer }) => {
+test('policies apply: with filtered, only errors in logic remain', async ({ viewer }) => {
   await viewer.locator('button', { hasText: 'Next with a wrong verdict' }).click();
   await expect(viewer.locator('#summary')).toContainText('wrong', { timeout: 30_000 });
   await viewer.getByLabel('Treated as zero').selectOption('filtered');
@@ -362,7 +362,7 @@ test('tolerances are decided too: filtered is right everywhere but for logic', a
   await expect(viewer.locator('#summary')).toContainText('under abs:');
 });
 
-test('without WebGL it draws an SVG, a phone shows all of it, axe finds nothing', async ({ viewer: page }) => {
+test('without WebGL, it draws an SVG, fits on a phone, and axe finds nothing', async ({ viewer: page }) => {
   await page.setViewportSize({ width: 390, height: 844 });
   await page.emulateMedia({ colorScheme: 'dark', reducedMotion: 'reduce' });
   await page.reload();

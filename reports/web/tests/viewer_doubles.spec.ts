@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The viewer on pairs of doubles: two parallel triangles of a model in metres, which coincide in float32.
+// The viewer on pairs of doubles: two parallel triangles from a model in metres, which coincide in float32.
 import {
   coordinate,
   doubles_url,
@@ -15,7 +15,7 @@ import {
 
 test.use({ of_doubles: true });
 
-test('the truth is that of the doubles, and float lanes decide what float32 stores of them', async ({ viewer }) => {
+test('the truth is that of the doubles, and float lanes decide them rounded to float32', async ({ viewer }) => {
   await expect(viewer.locator('#truth')).toHaveText(
     /^Truth: disjoint, 0\.01 \(.* ulps\) apart; as float32 stores it: intersects, contact: area$/,
   );
@@ -36,7 +36,7 @@ test('the truth is that of the doubles, and float lanes decide what float32 stor
   await expect(viewer.locator('#why')).not.toContainText('float32 stores');
 });
 
-test('it says what graze check says, also of pairs of strata', async ({ viewer }) => {
+test('it agrees with graze check, including on pairs of strata', async ({ viewer }) => {
   for (const stratum of ['', 'large_offset/f64', 'exact_contact/f64']) {
     if (stratum) {
       await viewer.getByLabel('Pairs of').selectOption(stratum);
@@ -47,7 +47,7 @@ test('it says what graze check says, also of pairs of strata', async ({ viewer }
   }
 });
 
-test('doubles are typed, stepped and linked in full', async ({ viewer }) => {
+test('doubles are typed, stepped and linked without rounding', async ({ viewer }) => {
   await expect(coordinate(viewer, 0)).toHaveValue('1000000.01');
   await coordinate(viewer, 4).fill('0.1');
   await coordinate(viewer, 4).blur();
@@ -67,7 +67,7 @@ test('doubles are typed, stepped and linked in full', async ({ viewer }) => {
   await viewer.goto('about:blank');
   await viewer.goto(link);
   await expect(coordinate(viewer, 4)).toHaveValue('0.10000000000000002');
-  // A link with a pair of float32 shows the same pair in doubles.
+  // A link with a float32 pair shows the same pair as doubles.
   await viewer.goto('about:blank');
   await viewer.goto(`${doubles_url()}#p=${'3dcccccd'.repeat(18)}`);
   await expect(coordinate(viewer, 4)).toHaveValue('0.10000000149011612');

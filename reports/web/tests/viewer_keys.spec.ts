@@ -6,7 +6,7 @@ import { pathToFileURL } from 'node:url';
 import { without_webgl } from './page';
 import { coordinate, expect, file, name, test } from './viewer_page';
 
-test('every key does what the help says', async ({ viewer }) => {
+test('every key does what the help describes', async ({ viewer }) => {
   test.slow();
   const board = viewer.locator('#board');
   await board.focus();
@@ -53,7 +53,7 @@ test('every key does what the help says', async ({ viewer }) => {
     [
       '+',
       async (key) => {
-        await viewer.keyboard.press('t'); // leaves the special cases, because their number is fixed
+        await viewer.keyboard.press('t'); // leave the special cases, because their number is fixed
         await changes(field)(key);
       },
     ],
@@ -119,7 +119,7 @@ test('steps are of one ulp, of 256 with Shift, of 65,536 with Alt', async ({ vie
   }
 });
 
-test('t shows the special cases of 2012 at once, and they are fixed', async ({ viewer }) => {
+test('t shows all special cases of 2012, which are fixed', async ({ viewer }) => {
   const before = await name(viewer);
   await viewer.keyboard.press('t');
   await expect(viewer.locator('h1')).toHaveText('the ten special cases of 2012');
@@ -152,7 +152,7 @@ test('random triangles are ten at first, one more or less by a key, against the 
   await shown('1 random triangle');
 });
 
-test('i and c name every triangle when they can be read, and the nearest otherwise', async ({ page }) => {
+test('i and c label every triangle if there is room, otherwise the nearest', async ({ page }) => {
   test.skip(!file(), 'this build has no viewer');
   const folder = dirname(file()),
     names = page.locator('#board svg text');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of `graze view` under test. In every test it must fetch nothing and leave the console clean.
+// The page of `graze view` under test. In every test, it must not fetch anything or write to the console.
 import { execFileSync } from 'node:child_process';
 import { pathToFileURL } from 'node:url';
 import { expect, test as base, type Page } from '@playwright/test';
@@ -66,14 +66,14 @@ export async function expect_as_checked(page: Page) {
   return native;
 }
 
-// Takes the step, and waits until another pair is shown.
+// Takes the step, and waits for another pair.
 export async function to_another_pair(page: Page, step: () => Promise<void>) {
   const before = await name(page);
   await step();
   await expect.poll(() => name(page), { timeout: 30_000 }).not.toBe(before);
 }
 
-// "Copy as" gives these texts, by kind.
+// Checks that "Copy as" gives these texts, by kind.
 export async function expect_copies(page: Page, copies: Record<string, string>) {
   for (const [kind, text] of Object.entries(copies)) {
     await page.locator('#copies button').getByText(kind, { exact: true }).click();

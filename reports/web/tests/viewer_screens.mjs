@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// node tests/viewer_screens.mjs GRAZE FOLDER: the first screens of the viewer in docs/viewer.md, on desktop and phone:
-// a special case of 2012, a contraction flip, an overflow, the simplest case of a mesh, and a query.
+// node tests/viewer_screens.mjs GRAZE FOLDER: screenshots of the viewer for docs/viewer.md, on desktop and phone: a
+// special case of 2012, a contraction flip, an overflow, the simplest case of a mesh, and a query.
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

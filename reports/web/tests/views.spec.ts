@@ -16,7 +16,7 @@ const brightness = (page: Page, property: 'color' | 'backgroundColor') =>
     property,
   );
 
-test('opens, and says how long it took', async ({ page }) => {
+test('the page opens, and the test prints the time', async ({ page }) => {
   await page.goto('about:blank');
   const started = Date.now();
   await page.goto(url());
@@ -40,7 +40,7 @@ for (const viewport of [{ width: 1280, height: 800 }, kPhone]) {
   });
 }
 
-test('the picture beside the answer says what it shows, in numbers', async ({ page, report, costs }) => {
+test('the picture beside the answer has a label with its numbers', async ({ page, report, costs }) => {
   const label = (await page.locator('#glance svg').first().getAttribute('aria-label'))!;
   const lane = report.lanes.findIndex((one) => one.id === 'moller_1997/f32/cpu');
   const wrong = report.group_rates.find(
@@ -53,7 +53,7 @@ test('the picture beside the answer says what it shows, in numbers', async ({ pa
   await expect(page.locator('#glance svg').first()).toContainText(nanoseconds(cost.middle));
 });
 
-test('every picture has words of its own', async ({ page, report }) => {
+test('every picture has its own label', async ({ page, report }) => {
   const place = report.cards.findIndex((card) => card.maps);
   await open_card(page, place + 1);
   for (const [i, image] of (await page.locator(`#kind-${place + 1} .panel img`).all()).entries()) {
@@ -67,7 +67,7 @@ test('every picture has words of its own', async ({ page, report }) => {
   );
 });
 
-test('a phone shows it without scrolling sideways', async ({ page }) => {
+test('the page fits on a phone without sideways scrolling', async ({ page }) => {
   await page.setViewportSize({ width: 375, height: 740 });
   await page.locator('summary', { hasText: /lanes$/, hasNotText: /^Costs/ }).click();
   const card = await open_card(page, 1);
@@ -81,7 +81,7 @@ test('a phone shows it without scrolling sideways', async ({ page }) => {
   }
 });
 
-test('dark where the reader wants it', async ({ page }) => {
+test('the page is dark if the reader prefers that', async ({ page }) => {
   expect(await brightness(page, 'backgroundColor')).toBeGreaterThan(0.9);
   await page.emulateMedia({ colorScheme: 'dark' });
   expect(await brightness(page, 'backgroundColor')).toBeLessThan(0.15);
@@ -90,7 +90,7 @@ test('dark where the reader wants it', async ({ page }) => {
 
 test.describe('by WebGL', () => {
   test.use({ webgl: true });
-  test('paper shows the drawing and hides what cannot be pressed, dark or not', async ({ page }) => {
+  test('print shows the drawing and hides controls, in light and dark mode', async ({ page }) => {
     await open_card(page, 1);
     await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
     expect(await brightness(page, 'backgroundColor')).toBeGreaterThan(0.9);
@@ -102,7 +102,7 @@ test.describe('by WebGL', () => {
   });
 });
 
-test('the keyboard reaches the answer first, and shows where it is', async ({ page }) => {
+test('the keyboard reaches the answer first, and focus is visible', async ({ page }) => {
   await page.keyboard.press('Tab');
   await expect(page.locator('.skip')).toBeFocused();
   await page.keyboard.press('Tab');
@@ -110,7 +110,7 @@ test('the keyboard reaches the answer first, and shows where it is', async ({ pa
   expect(outline).toBe('solid');
 });
 
-// These tests use the comparison page, which has all parts but fewer rows. axe takes some time for each row.
+// These tests use the comparison page, which has all parts but fewer rows, because axe needs some time for each row.
 for (const [colorScheme, where] of [
   ['light', 'desk'],
   ['dark', 'phone'],

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests a function that decides whether two triangles intersect, within your own project's tests. Pairs are drawn from
-// Graze's strata, and their truth is exact. <graze/gtest.h>, <graze/catch2.h> and <graze/doctest.h> turn such a test
-// into a test case. Needs C++20; the library, graze::test, depends only on the C++ standard library.
+// Tests a function that decides whether two triangles intersect, as part of your own project's tests. Pairs are drawn
+// from Graze's strata, and their truth is exact. <graze/gtest.h>, <graze/catch2.h> and <graze/doctest.h> turn such a
+// test into a test case. Needs C++20; the library, graze::test, depends only on the C++ standard library.
 #pragma once
 
 #include <cstddef>
@@ -17,9 +17,9 @@
 
 namespace graze {
 
-// Calls f with `count` pairs of the strata, in order. A pair depends only on the seed, the stratum and its index; it is
-// the same on every machine. The strata share the pairs evenly. strata: names with * and ?, separated by commas; "!x"
-// leaves out x; "*" is all. `graze strata` lists them. Throws: std::invalid_argument for a name that no stratum has.
+// Calls f with `count` pairs, divided evenly among the strata, in order. A pair depends only on the seed, the stratum
+// and its index; it is the same on every machine. strata: names with * and ?, separated by commas; "!x" leaves out x;
+// "*" is all. `graze strata` lists them. Throws: std::invalid_argument for a name that no stratum has.
 void for_each_pair(std::string_view strata, std::uint64_t seed, std::uint64_t count,
                    const std::function<void(const Pair&)>& f);
 
@@ -35,8 +35,8 @@ struct TestOptions {
   std::uint64_t pairs = 100'000;  // the environment variable GRAZE_PAIRS overrides it
   std::uint64_t seed = 1;         // the environment variable GRAZE_SEED overrides it
   double max_wrong = 0;           // the accepted share of wrong answers among all pairs, 0 to 1
-  Answer touching = required;     // hulls that meet in points or segments, which a small motion separates
-  Answer coplanar = required;     // one plane holds all six vertices
+  Answer touching = required;     // hulls that meet, but that a small motion separates
+  Answer coplanar = required;     // all six vertices lie in one plane
   Answer degenerate = required;   // a triangle is a segment or a point
   Answer shared = required;       // a vertex of one is a vertex of the other
 };
@@ -48,18 +48,18 @@ struct TestResult {
   std::string fault;    // the error on the smallest pair: "it says disjoint, but the triangles meet in a point"
   std::uint64_t pairs = 0;
   Counts counts;                 // an exception counts as crashed
-  std::optional<Pair> smallest;  // if it failed: a wrong pair, shrunk without changing truth and answer
+  std::optional<Pair> smallest;  // if it failed: a wrong pair, shrunk without changing truth or answer
 };
 
-// Decides all pairs. overlap takes each triangle as three vertices x y z; it returns 0 for disjoint, a positive
-// number for intersects, and a negative one for declined. name: the function's name, for the message. The test fails if
-// more answers are wrong than `max_wrong` allows, if the function declines every pair, or if an option or environment
-// variable is not valid. The result depends only on the arguments and those two environment variables.
+// Tests the function on all pairs. overlap takes each triangle as three vertices x y z; it returns 0 for disjoint, a
+// positive number for intersects, and a negative one for declined. name: the function's name, for the message. The test
+// fails if more answers are wrong than `max_wrong` allows, if the function declines every pair, or if an option or
+// environment variable is not valid. The result depends only on the arguments and those two environment variables.
 TestResult test_overlap(std::string_view name, const std::function<int(const float*, const float*)>& overlap,
                         const TestOptions& options = {});
 
 // Like test_overlap, for code that decides many pairs per call. `decide` sets the verdict of each of `count` pairs, at
-// most 4096. A value that is no verdict counts as crashed. An exception ends the test.
+// most 4096. A value that is not a verdict counts as crashed. An exception ends the test.
 using DecidePairs = std::function<void(const Pair* pairs, std::size_t count, Verdict* verdicts)>;
 TestResult test_pairs(std::string_view name, const DecidePairs& decide, const TestOptions& options = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the triangles of two three.js geometries that meet, by exact tests. Apply a mesh's matrix first:
+// Finds the pairs of triangles of two three.js geometries that meet, with exact tests. Apply a mesh's matrix first:
 // geometry.clone().applyMatrix4(mesh.matrixWorld).
 import { ready } from 'graze-wasm';
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The actions of all keys. docs/viewer.md compares the keys with those of 2012.
+// What each key does. docs/viewer.md compares the keys with those of 2012.
 import type { board } from './board';
 import { kMove } from './coordinates';
 import type { field } from './field';

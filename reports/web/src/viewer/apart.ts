@@ -21,7 +21,7 @@ export function differing(model: Model, lane: string): string | undefined {
   return [lane, model.counterpart(lane, 'cuda-fma')].find((one) => one !== undefined && model.differs(one));
 }
 
-// The indices in both runs of the first comparison with different outcomes. Up to that comparison, both runs take the
+// The index, in each run, of the first comparison with different outcomes. Up to that comparison, both runs take the
 // same steps.
 function parting(run: Step[], other: Step[]): [number, number] | null {
   const places = (steps: Step[]) => steps.flatMap((step, i) => (step.relation ? [i] : []));

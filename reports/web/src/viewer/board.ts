@@ -10,13 +10,13 @@ import { placed, type Field, type Placed } from './shape';
 
 const kReach = 16; // pixels around a vertex within which it can be grabbed
 const kTurn = Math.PI / 18;
-const kFine = 1 / 64; // a drag with Shift moves a vertex by this share of the distance
+const kFine = 1 / 64; // a drag with Shift moves a vertex by this fraction of the distance
 const kGapSeen = 0.5; // length of the gap after "Show the gap", in half-widths of the board
 const kFlat: Vec[] = [
   [0, 0, 0],
   [1, 0, 0],
   [0, 1, 0],
-]; // used for the view if no polygon is in the drawing
+]; // sets the view if the drawing contains no polygon
 
 export function board(model: Model, fields: () => Field | null) {
   let magnified = 1,
@@ -36,8 +36,8 @@ export function board(model: Model, fields: () => Field | null) {
   place();
   const { camera, set } = orbit(ground, best_view(), draw, draw);
 
-  // Triangles of 2012 get the first view of 2012. Other triangles are seen from a direction in which they are not
-  // edge-on.
+  // The 2012 triangles get the 2012 viewer's first view. Other triangles are seen from a direction in which they are
+  // not edge-on.
   function best_view() {
     if (fields()?.of_2012) return { azimuth: 0, elevation: 0.56, zoom: 1 };
     const seen = [now.shape.a, now.shape.b].filter((polygon) => polygon.length > 2);
@@ -56,7 +56,7 @@ export function board(model: Model, fields: () => Field | null) {
       return paper.replaceChildren(svg_projection(now.shape, view_of(camera), ground.clientWidth, ground.clientHeight));
     drawn ??= picture(now.shape);
     drawn.draw(canvas, camera);
-    old?.dispose(); // only now, because three.js deletes unused programs, which would be compiled again
+    old?.dispose(); // not earlier: three.js deletes unused programs, which would then be recompiled
     old = null;
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fields of the 18 coordinates: one can choose, type, paste and step a coordinate.
+// The input fields of the 18 coordinates: a coordinate can be chosen, typed, pasted and stepped.
 import { button, h, section, table, table_row } from '../dom';
 import { coordinate_name, decimal, hex_float, stored_as } from './data';
 import type { Model } from './model';
@@ -39,7 +39,7 @@ export function coordinates(model: Model, say: (text: string) => void) {
       },
       onpaste: (event: ClipboardEvent) => {
         const found = numbers_in(event.clipboardData?.getData('text') ?? '');
-        if (found.length < 2) return; // a single number is an ordinary paste
+        if (found.length < 2) return; // a single number is pasted as usual
         event.preventDefault();
         take(found);
       },
@@ -74,7 +74,7 @@ export function coordinates(model: Model, say: (text: string) => void) {
   }
   function update() {
     fields.forEach((field, c) => {
-      if (!Object.is(shown[c], model.pair[c])) show(c); // do not overwrite what is being typed
+      if (!Object.is(shown[c], model.pair[c])) show(c); // keep the text that is being typed
       field.classList.toggle('chosen', c === model.chosen);
     });
     const value = model.pair[model.chosen],

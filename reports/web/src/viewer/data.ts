@@ -11,14 +11,14 @@ export interface Replay {
   lanes: string[];
   pairs: { bits: string; truth: Verdict; contact: string; verdicts: string }[];
 }
-// What the build stored for pairs of one coordinate type. module: graze.wasm or graze_f64.wasm, gzipped, in base64.
+// The data that the build stored for one coordinate type. module: graze.wasm or graze_f64.wasm, gzipped, in base64.
 export interface Stored {
   module: string;
   evidence: string;
   replay: Replay;
 }
-// The verdict of a lane of the user's own code on a pair. stored: it is from the campaign, because the code has
-// changed.
+// The verdict of a lane of the user's own code on a pair. stored: the verdict comes from the campaign, because the code
+// has changed.
 export interface Said {
   lane: string;
   verdict: string;
@@ -32,7 +32,7 @@ export interface ViewData extends Stored {
   pairs: { name: string; bits: string; said?: Said[] }[];
   lanes_left_out?: { why: Record<string, string> }; // of the user's own code
   triangles: string[]; // of a mesh or a query, 9 words each; may be empty
-  ids?: number[]; // of these triangles; without ids, they are numbered in order
+  ids?: number[]; // ids of these triangles; without ids, they are numbered in order
   opens?: 'pair' | 'triangles' | 'random'; // triangles: all at once, against the first triangle of the pair
   random?: number; // how many random triangles are shown first
 }
@@ -52,7 +52,7 @@ export function to_bits(pair: Coordinates): string {
     : Array.from(new Uint32Array(buffer), (word) => word.toString(16).padStart(8, '0')).join('');
 }
 
-// The coordinate type of a pair in a link, from the length of its bits; null if the bits are not those of a pair.
+// The coordinate type of a pair in a link, from the number of hex digits; null if they are not a pair's.
 export const type_of_bits = (bits: string): Scalar | null =>
   /^([0-9a-f]{144}|[0-9a-f]{288})$/.test(bits) ? (bits.length === 288 ? 'f64' : 'f32') : null;
 

@@ -19,12 +19,12 @@ export function field(model: Model, data: ViewData, say: (text: string) => void,
     given = data.triangles.map((bits) => from_bits(bits, data.coordinates));
   let kind: Kind | null = null, // null: the pair alone
     seed = 1n,
-    own: { name: string; pair: Coordinates }, // the pair whose first triangle is the reference of the triangles
+    own: { name: string; pair: Coordinates }, // the pair whose first triangle is the reference
     triangles: Coordinates[] = [],
     ids: number[] = [],
     current: Field | null = null;
   const shown = { given: given.length, random: data.random || kFirst, special: special.length };
-  const left: { kind: Kind | null; name: string; pair: Coordinates }[] = []; // the earlier drawings, to go back to
+  const left: { kind: Kind | null; name: string; pair: Coordinates }[] = []; // the previous drawings, for "Back"
   const told = h('p', { class: 'small', id: 'field' });
 
   // Random triangles and special cases have their own reference, so showing another pair removes them.
@@ -62,7 +62,7 @@ export function field(model: Model, data: ViewData, say: (text: string) => void,
     if (kind !== 'given') face();
     make();
   }
-  // Shows the pair of the reference and the first of these triangles.
+  // Shows the pair that consists of the reference and the first of these triangles.
   function face() {
     own = pair_of(0);
     model.show(own.pair, own.name);
@@ -134,7 +134,7 @@ export function field(model: Model, data: ViewData, say: (text: string) => void,
     model.show(pair, unchanged ? name : `${without_changed(name)}, changed`);
   }
 
-  // The triangles that +, - and space change: those of a mesh or a query if there are any, otherwise random triangles.
+  // The triangles that +, - and space change: those of a mesh or a query if there are any; otherwise random triangles.
   const changing = given.length ? 'given' : 'random';
   const special_stay = () => say('the special cases are fixed; press t to leave them');
   return {

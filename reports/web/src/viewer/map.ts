@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ulp map: the verdicts around the pair as two of its coordinates move by ulps.
+// The ulp map: the verdicts around the pair as two of its coordinates move by single ulps.
 import { breakable, choice, h, section } from '../dom';
 import { coordinate_name } from './data';
 import type { Model } from './model';
@@ -71,7 +71,7 @@ export function map(model: Model, module: WebAssembly.Module) {
     }
   }
 
-  // Takes the pair of the cell that was clicked.
+  // Loads the pair of the clicked cell.
   function press(canvas: HTMLCanvasElement, event: MouseEvent) {
     const box = canvas.getBoundingClientRect();
     const column = Math.floor(((event.clientX - box.left) / box.width) * kSide),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Computes ulp maps, coarse to fine, off the page's main thread.
+// Computes ulp maps in a worker, from coarse to fine.
 import type { Coordinates } from './data';
 import { load, type Graze } from './graze.js';
 

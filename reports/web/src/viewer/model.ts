@@ -6,7 +6,7 @@ import type { Graze, Margin, Truth, Verdict } from './graze.js';
 export type Centre = 'both triangles' | 'the chosen vertex' | 'the contact or gap';
 export const kCentres: Centre[] = ['both triangles', 'the chosen vertex', 'the contact or gap'];
 
-// The thesis's special cases, in the thesis's order: a triangle B for each case, against one reference triangle.
+// The thesis's special cases, in its order. Each case is a triangle B; all share one reference triangle.
 const kReference = [0, -2, 6, 0, 5, 0, 0, -3, 0];
 const kSpecial = [
   ['across the line', -2, -2, 0, 2, -3, 0, 3, -1, 0],
@@ -33,7 +33,7 @@ export interface Decided {
   verdicts: Record<string, Verdict | null>;
   truth: Truth;
   margin: Margin;
-  stored: Truth | null; // for doubles, the truth of the pair that float32 stores, if that is another pair
+  stored: Truth | null; // for doubles: the truth of the pair rounded to float32, if rounding changes the pair
 }
 
 export class Model {
@@ -49,7 +49,7 @@ export class Model {
   private future: { pair: Coordinates; name: string }[] = [];
   private moving = false;
 
-  // changed: called after each change; `moved` is true if the pair or the policy changed, not only what is shown.
+  // changed: called after each change; `moved` is true if the pair or the policy changed, not only the display.
   constructor(
     readonly graze: Graze,
     first: { name: string; pair: Coordinates },
@@ -72,7 +72,7 @@ export class Model {
     this.changed(true);
   }
 
-  // Undo reverts everything between start_moving and stop_moving in one step.
+  // All changes between start_moving and stop_moving are undone in one step.
   start_moving() {
     this.remember();
     this.moving = true;
@@ -136,8 +136,8 @@ export class Model {
       verdict = verdicts[lane];
     return verdict !== null && truth.verdict !== 'declined' && verdict !== truth.verdict;
   }
-  // Chooses the lane that is most likely of interest: a GPU lane that differs from the CPU, otherwise a wrong lane. If
-  // there is neither, the chosen lane remains.
+  // Chooses the most interesting lane: a GPU lane that differs from the CPU, otherwise a wrong lane. If there is
+  // neither, the choice does not change.
   choose_telling() {
     const { lanes } = this.graze;
     this.set({ lane: lanes.find((lane) => this.differs(lane)) ?? lanes.find((lane) => this.wrong(lane)) ?? this.lane });
@@ -148,7 +148,7 @@ export class Model {
       other = `${subject}/${scalar}/${variant}`;
     return this.graze.lanes.includes(other) ? other : undefined;
   }
-  // Whether the lane decides differently from its cpu lane, in which every operation is rounded as written.
+  // Whether the lane decides differently from its cpu lane, which rounds every operation as written.
   differs(lane: string) {
     const cpu = this.counterpart(lane, 'cpu'),
       { verdicts } = this.decided;

@@ -21,7 +21,7 @@ const in_full = (x: number) => (Object.is(x, -0) ? '-0' : String(Number(x.toPrec
 export const ulp_of = (scalar: string) => (x: number) =>
   2 ** (Math.floor(Math.log2(Math.abs(x) || 2 ** -100)) - (scalar === 'f32' ? 23 : 52));
 
-// Writes the numbers with as many digits as it takes to tell them apart.
+// Writes the numbers with just enough digits to tell them apart.
 export function told_apart(numbers: number[]): string[] {
   const distinct = new Set(numbers.map((x) => (x === 0 ? 0 : x))).size;
   const unlike = (texts: string[]) => new Set(texts.map((text) => (text === '-0' ? '0' : text))).size === distinct;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws the ranges that the chosen lane compared on a line: intervals or projections. Beside them are the same ranges
-// with 113 bits, and the ranges on the axis of the margin.
+// Draws the ranges that the chosen lane compared on a line: intervals or projections. Also draws the same ranges
+// computed with 113 bits, and the ranges on the axis of the margin.
 import { choice, h, on_width, section, type Child } from '../dom';
 import { figure } from '../format';
 import { differing } from './apart';
@@ -73,7 +73,7 @@ export function on_a_line(model: Model) {
     return gpu && (gpu === lane ? model.counterpart(lane, 'cpu') : gpu);
   };
 
-  // Shows the ranges that the lane compared on a line, if it had not decided before that.
+  // Shows the ranges that the lane compared on a line, unless it decided before that.
   function of_the_lane() {
     const { lane, pair, graze } = model,
       run = graze.steps(pair, lane)?.steps ?? [],

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shows the verdicts of the user's own code. The page cannot run that code, so it has verdicts only for the pairs that
-// were written into the page.
+// were stored in the page.
 import { h, section } from '../dom';
 import { to_bits, type ViewData } from './data';
 import type { Model } from './model';

@@ -14,7 +14,7 @@ export interface Ranges {
 
 const kEdges = ['[0] [1]', '[1] [2]', '[2] [0]'];
 const edge = (of: string, i: number) => `edge ${of}${kEdges[i]}`;
-// The axes in the order in which the algorithms try them.
+// The axes, in the order in which the algorithms test them.
 const kSeventeen = [
   'normal of a',
   'normal of b',
@@ -25,14 +25,14 @@ const kSix = [0, 1, 2]
   .flatMap((i) => [`across ${edge('a', i)}`, `across ${edge('b', i)}`])
   .map((name) => `${name}, in the plane of a`);
 
-// Orders two numbers as the algorithms do, even if one is NaN.
+// Sorts two numbers as the algorithms do, even if one is NaN.
 const sorted = (x: number, y: number): Ends => (x < y ? [x, y] : [y, x]);
 const span = ([first, ...rest]: number[]): Ends =>
   rest.reduce(([low, high], t) => [t < low ? t : low, t > high ? t : high], [first, first]);
 const same = (x: number, y: number) => x === y || (Number.isNaN(x) && Number.isNaN(y));
 
-// The ends of both triangles' ranges, from the comparisons that ordered the ends. If only the swapped ranges fit the
-// step, the ranges are swapped.
+// The ends of both triangles' ranges, from the comparisons that sorted the ends. If only the swapped ranges match the
+// step, they are swapped.
 function in_order(
   name: string,
   [one, other]: { lane: Ends; exact: Ends }[],
@@ -68,7 +68,7 @@ export function intervals(run: Step[]): Ranges | null {
       );
 }
 
-// The projections on each axis that the lane tried.
+// The projections on each axis that the lane tested.
 export function projections(run: Step[], subject: string): Ranges[] {
   const all: Ranges[] = [],
     names = subject === 'separating_axes' ? kSeventeen : kSix;
@@ -100,8 +100,8 @@ export const gap = (a: Ends, b: Ends) => Math.max(b[0] - a[1], a[0] - b[1]);
 export const lane_gap = ({ a, b }: Ranges) => gap(a, b);
 export const exact_gap = ({ exact_a, exact_b }: Ranges) => gap(exact_a, exact_b);
 
-// The axis to show first: an axis that separates in the lane, otherwise an axis that separates with 113 bits, otherwise
-// the axis with the least overlap.
+// The axis to show first: one that separates in the lane, otherwise one that separates with 113 bits, otherwise the one
+// with the least overlap.
 export function telling(all: Ranges[]): number {
   const size = ({ a, b }: Ranges) => Math.max(a[1], b[1]) - Math.min(a[0], b[0]) || 1;
   for (const of of [lane_gap, exact_gap]) {

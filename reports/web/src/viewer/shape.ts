@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pair as a shape to draw. Exact differences from the centre are magnified in double before they become float32, so
-// that a single ulp is visible. Parts far outside the drawing are cut off first.
+// The pair as a shape to draw. Exact differences from the centre are magnified in double before they are rounded to
+// float32, so a single ulp is visible. Parts far outside the drawing are cut off first.
 import { cross, dot, drawn_sizes, fan, minus, scale_note, type Mark, type Shape, type Vec } from '../drawing';
 import { figure } from '../format';
 import { decimal, type Coordinates } from './data';
@@ -57,7 +57,7 @@ function plane(corners: Vec[]): Vec[] {
   ].map(([s, t]) => middle.map((c, k) => c + s * e[k] + t * f[k]) as Vec);
 }
 
-// b's vertices projected onto a's plane, the only part of b that projected_sat compares. Empty if a has no plane.
+// b's vertices projected onto a's plane; projected_sat compares no other part of b. Empty if a has no plane.
 function shadow_of(points: Vec[]): Vec[] {
   const [p, q, r] = points,
     n = cross(minus(q, p), minus(r, p)),
@@ -118,7 +118,7 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
   const place = (p: readonly number[]) => [0, 1, 2].map((k) => (p[k] - middle[k]) / unit[k]) as Vec;
   const marks: Mark[] = [];
   const [a, b] = [points.slice(0, 3).map(place), points.slice(3).map(place)];
-  // The radius within which everything fits from every direction, before magnification.
+  // The radius of a sphere that contains everything, before magnification.
   const radius =
     Math.max(
       0.6,

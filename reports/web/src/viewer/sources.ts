@@ -4,7 +4,7 @@ import { button, choice, h } from '../dom';
 import { from_bits, type Coordinates, type ViewData } from './data';
 import { special_cases, type Model } from './model';
 
-const kSearched = 200_000; // limit on pairs of a stratum in one search
+const kSearched = 200_000; // the largest number of a stratum's pairs in one search
 const kSearchSlice = 30; // milliseconds between progress updates
 
 export type Wanted = 'any' | 'apart' | 'wrong';
@@ -44,7 +44,7 @@ export function sources(model: Model, data: ViewData, say: (text: string) => voi
     model.choose_telling();
   }
 
-  // Whether some lane is wrong on the pair; for `apart`, whether some GPU lane differs from the CPU's.
+  // Whether some lane is wrong on the pair or, for `apart`, whether some GPU lane differs from the CPU's.
   function fits(wanted: Wanted, pair: Coordinates) {
     const verdicts = graze.decide(pair);
     if (wanted === 'wrong') {

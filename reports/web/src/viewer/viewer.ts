@@ -36,7 +36,7 @@ function margin_words({ decided: { truth, margin } }: Model): string {
   return margin.sign > 0 ? `${range} apart` : `${range} deep`;
 }
 
-// The truth of the pair as float32 stores it, if it differs from the truth of the doubles.
+// The truth of the pair rounded to float32, if it differs from the truth of the doubles.
 function stored_words({ decided: { truth, stored } }: Model): string {
   if (!stored || (stored.verdict === truth.verdict && stored.contact === truth.contact)) return '';
   if (stored.verdict === 'declined') return '; float32 cannot store it';
@@ -56,7 +56,7 @@ export interface First {
   note?: string;
 }
 
-// The vertex nearest to the contact or the gap, because moving and mapping it shows the most.
+// The vertex nearest to the contact or the gap; moving it, or mapping around it, shows the most.
 function nearest_vertex(pair: Coordinates, { contact, witness }: Drawing): number {
   const seen = contact.length ? contact : witness,
     away = [3, 4, 5, 0, 1, 2].map((v) => ({
@@ -96,7 +96,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
 
   const update_name = () => (name.textContent = many.title() ?? model.name);
 
-  // Updates text at once, drawings with the next frame, and slower parts after a moment without changes.
+  // Updates text at once, drawings at the next frame, and slower parts after a moment without changes.
   function update_text() {
     verdicts.update();
     const { decided, policy: under } = model,
@@ -223,7 +223,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
       model.show(next.pair, next.name);
       choose(next);
     },
-    // Call this when the elements are in the page.
+    // Call this once the elements are in the page.
     begin() {
       choose(first);
       if (data.opens === 'triangles' || data.opens === 'random') many.all();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Explains the chosen lane's verdict: where its run differs from that of the CPU, or from a run with 113 bits.
+// Explains the chosen lane's verdict: where its run differs from the CPU's, or from a run with 113 bits.
 import { h, marked, scroller, table, type Child } from '../dom';
 import { apart, differing } from './apart';
 import type { Graze, Step, Verdict } from './graze.js';

@@ -25,7 +25,7 @@ AgreeSpec spec_of(const Lane& first, const Lane& second, std::uint64_t pairs, co
 
 TEST(Tolerance, MayBeSubnormal) { EXPECT_EQ(tolerance_of("plane_distance=abs:1e-320"), 1e-320); }
 
-// Compares every count with a recount by decide_one: without a policy, on ladders, and for twins.
+// Recounts with decide_one: without a policy, for ladders of tolerances, and for twins.
 TEST(AgreementSweep, CountsWhatARecountCounts) {
   const auto sources = stratum_sources(3, 3001, {"near_vertex_face", "shared_edge", "extreme_scale"});
   const std::vector<std::string> policies = {"", "abs:1e-9", "abs:1e-6", "rel:1", "rel:100", "plane_distance=rel:8"};
@@ -75,7 +75,7 @@ TEST(Agree, ALaneAgreesWithItselfWithoutAPolicy) {
   EXPECT_EQ(agreed.result, TuneResult::satisfied);
   EXPECT_EQ(agreed.confirmed.pairs, 5000u);
   EXPECT_EQ(agreed.confirmed.differing, 0u);
-  EXPECT_GT(agreed.confirmed.of[0].wrong(), 100u);  // agreement is not truth
+  EXPECT_GT(agreed.confirmed.of[0].wrong(), 100u);  // lanes that agree can both be wrong
   EXPECT_EQ(agreed.confirmed.of[0], agreed.confirmed.of[1]);
 }
 
@@ -97,7 +97,7 @@ TEST(Agree, WithoutContractionNoPolicyIsNeeded) {
   EXPECT_GT(contracted, 100u);
 }
 
-// Checks that the choice is the one that agree() promises for these curves, and its bounds on pairs of another seed.
+// Checks that agree() made the choice that it documents, and that its bounds hold on pairs of another seed.
 void expect_true(const AgreeSpec& spec, const Agreed& agreed, const std::vector<std::string>& globs) {
   const Agreement chosen = spec.sweep(std::vector<std::string>{agreed.chosen}, spec.sources).front();
   const auto clearly = [&](const Agreement& a) {
@@ -211,7 +211,7 @@ TEST(Agree, TheResultNeedsPairsEnough) {
   };
   EXPECT_EQ(agreement_result(with(0, 100), with(0, 2995), 1e-3), TuneResult::satisfied);
   EXPECT_EQ(agreement_result(with(0, 100), with(0, 2994), 1e-3), TuneResult::too_few_pairs);
-  EXPECT_EQ(agreement_result(with(1, 100), with(3, 1000), 1e-3), TuneResult::too_few_pairs);  // 0.0008 or more
+  EXPECT_EQ(agreement_result(with(1, 100), with(3, 1000), 1e-3), TuneResult::too_few_pairs);  // rate >= 0.0008
   EXPECT_EQ(agreement_result(with(1, 100), with(4, 1000), 1e-3), TuneResult::not_satisfiable);
   EXPECT_EQ(agreement_result(with(0, 100), with(4, 1000), 1e-3), TuneResult::not_confirmed);
 }

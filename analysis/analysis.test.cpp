@@ -53,7 +53,7 @@ TEST(Tally, SumsAreTheTallyOfTheUnion) {
   }
 }
 
-// Tests blocks of different lengths: their last words are full, partly used, or absent.
+// Tests block lengths for which the last word is full, partly used, or absent.
 TEST(Tally, CountsEveryPairOfABlockOfAnyLength) {
   for (const std::size_t count :
        {std::size_t{1}, std::size_t{63}, std::size_t{64}, std::size_t{65}, std::size_t{128}, std::size_t{130}}) {
@@ -69,7 +69,7 @@ TEST(Tally, CountsEveryPairOfABlockOfAnyLength) {
   }
 }
 
-// For foreign code, both bits set mean that it failed; one bit alone is its verdict.
+// For foreign code, both bits together mean that it failed; a single bit is its verdict.
 TEST(Tally, FailuresOfForeignCodeAreCountedAsWhatTheyAre) {
   struct Code : ForeignCode {
     void decide(const Pair*, std::size_t, std::uint64_t*, std::uint64_t*) override {}
@@ -144,7 +144,7 @@ TEST(LaneCounts, EachAddsToItself) {
 
 TEST(LaneCounts, AVerdictThatIsNotTheTruthCountsByWhatItIs) {
   constexpr std::size_t kField[] = {1, 0, 2,
-                                    3, 4, 5};  // of disjoint, intersects, declined, crashed, timed out, unstable
+                                    3, 4, 5};  // counts of disjoint, intersects, declined, crashed, timed out, unstable
   for (int verdict = 0; verdict < 6; ++verdict) {
     LaneCounts counts;
     counts.of(static_cast<Verdict>(verdict)) += 3;
@@ -178,7 +178,7 @@ TEST(Tally, StoredCountsGoToTheirBucketAndLane) {
   EXPECT_EQ(sum.pairs(make_bucket(-1, 2)), 0u);
 }
 
-// Pairs that touch in a point, are coplanar, share a vertex, or are degenerate: each kind has its own bit.
+// Each kind has its own bit: pairs that touch in a point, are coplanar, share a vertex, or are degenerate.
 TEST(Convention, LeavesOpenWhatItNames) {
   const Pair touching{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {1, 2, 4}, {2, 1, 4}}};
   const Pair coplanar{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 5, 0}, {9, 5, 0}, {5, 9, 0}}};

@@ -18,7 +18,7 @@
 namespace graze::analysis {
 namespace {
 
-// The child's messages: kAlive before each step; at the end kDone, then the result.
+// The child's messages: kAlive before each step; kDone and the result at the end.
 constexpr char kAlive = 0, kDone = 1;
 
 // Reads the child's output until the child closes the pipe or writes nothing for `seconds`.   Returns: whether it

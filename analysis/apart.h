@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs work on foreign code in a child process, which is killed if it writes nothing for too long. The code may crash
-// or hang.
+// Runs foreign code, which may crash or hang, in a child process. The child is killed if it reports nothing for too
+// long.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace graze::analysis {
 
-// The functions that the work in the child may call.
+// How the work in the child reports to its parent.
 class ApartFrom {
  public:
   explicit ApartFrom(int pipe) : pipe_(pipe) {}
@@ -24,7 +24,7 @@ class ApartFrom {
 
 enum class Ended { in_order, crashed, silent };
 
-// Runs the work. Each step may take `seconds`.   result: receives what the work passed to `finish`, if it ended in
+// Runs the work. Each step may take `seconds`.   result: the data that the work passed to `finish`, if it ended in
 // order.
 // Throws: std::runtime_error if no process can be started; the message names the lane.
 Ended run_apart(const Lane& lane, double seconds, const std::function<void(const ApartFrom&)>& work,

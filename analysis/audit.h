@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks whether the cause that an explanation names is the real cause. If only this cause is removed, the verdict
-// must become right; with only this cause, it must stay wrong.
+// Checks whether an explanation names the real cause. The verdict must become right if only this cause is removed, and
+// must stay wrong with this cause alone.
 #pragma once
 
 #include "analysis/explain.h"
@@ -18,9 +18,8 @@ namespace graze::analysis {
 // underflow     both limits
 // rounding      the wrong outcomes of the deciding             rounding to the scalar's mantissa, without
 //               comparisons are corrected                      contraction and without exponent limits
-// If comparisons are known but no small set of them decides, the audit confirms no cause except logic. The audit runs
-// the lane's source in other arithmetic. A contracted lane uses the contraction rule that reproduces the lane's own
-// run.
+// If the comparisons are known but no small set of them decides, the audit confirms only logic. The audit runs the
+// lane's source in other arithmetic. A contracted lane uses the contraction rule that reproduces the lane's own run.
 // Requires: an explanation's lane for this pair, and the pair's truth. The function does not read `lane.settled`.
 Settled audit(const LaneExplanation& lane, const AnyPair& pair, Verdict truth);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks deciding comparisons and causes by removing them. False causes must not pass.
+// Checks deciding comparisons by correcting them, and causes by removing them. False causes must not pass.
 #include "analysis/audit.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TEST(Deciding, IsNotTheFirstWrongComparison) {
   EXPECT_TRUE(first_wrong->line.ends_with("interval_overlap.h:49")) << first_wrong->line;
 }
 
-// The lane is right if all deciding comparisons are corrected, and wrong if only the first ones are.
+// The lane is right once all deciding comparisons are corrected, and still wrong if the last one is not.
 TEST(Deciding, CorrectedTheLaneIsRight) {
   std::size_t single = 0, sets = 0, none = 0;
   for (const Wrong& wrong : all_wrong()) {
@@ -103,9 +103,8 @@ Corrected corrected(const Wrong& wrong, const std::vector<std::size_t>& comparis
   return {path_of(run), run.verdict};
 }
 
-// Tries every smaller set, and every earlier set of the same size. The four pairs come from reports about a version
-// that corrected values instead of outcomes. It named two comparisons where one is enough, or a later comparison than
-// the first.
+// Tries every smaller set, and every earlier set of the same size. The four pairs come from bug reports. A version that
+// corrected values instead of outcomes named two comparisons where one is enough, or not the first one.
 TEST(Deciding, IsTheSmallestSetAndOfEqualOnesTheFirst) {
   std::vector<Wrong> some;
   for (std::size_t i = 0; i < all_wrong().size(); i += 7) some.push_back(all_wrong()[i]);
@@ -145,7 +144,7 @@ TEST(Deciding, IsTheSmallestSetAndOfEqualOnesTheFirst) {
   EXPECT_GT(earlier, 10);
 }
 
-// If the cause is overflow or underflow, the reported value must be due to it, not to rounding alone.
+// If the cause is overflow or underflow, the reported value must come from it, not from rounding alone.
 TEST(Deciding, WhatIsToldOfARangeComesFromIt) {
   int told = 0;
   for (const Wrong& wrong : all_wrong()) {
@@ -180,13 +179,12 @@ TEST(Audit, MostCausesStandUpToIt) {
   EXPECT_EQ(count[Cause::logic][1], 0);
 }
 
-// A false cause in place of the true one does not pass.
 TEST(Audit, AFalseCauseDoesNotPass) {
   std::map<std::pair<Cause, Cause>, int> tried;
   for (const Wrong& wrong : all_wrong()) {
     if (wrong.lane.settled != Settled::yes) continue;
     for (const Cause other : {Cause::rounding, Cause::contraction, Cause::overflow, Cause::underflow, Cause::logic}) {
-      if (other == wrong.lane.cause || other == Cause::rounding) continue;  // exactness removes range errors too
+      if (other == wrong.lane.cause || other == Cause::rounding) continue;  // exact arithmetic removes range errors too
       LaneExplanation lied = wrong.lane;
       lied.cause = other;
       lied.contractions = {};
@@ -197,7 +195,7 @@ TEST(Audit, AFalseCauseDoesNotPass) {
   EXPECT_GE(tried.size(), 12u);
 }
 
-// If the cause is rounding, the audit fails for every comparison of the run other than the deciding one.
+// If the cause is rounding, the audit rejects every comparison other than the deciding one.
 TEST(Audit, AnotherComparisonDoesNotPass) {
   int tried = 0, passed = 0;
   for (const Wrong& wrong : all_wrong()) {
@@ -212,7 +210,7 @@ TEST(Audit, AnotherComparisonDoesNotPass) {
       LaneExplanation lied = wrong.lane;
       Decider& decider = lied.deciding.front();
       decider.before = before;
-      decider.exact.held = seen.taken;  // as the lane decided it
+      decider.exact.held = seen.taken;  // the lane's own outcome
       ++tried;
       passed += audit(lied, wrong.pair, wrong.truth) == Settled::yes;
       break;

@@ -40,7 +40,7 @@ class Fusing {
     if (asked_) asked_();
     return cuda::decide_fusing(lane_, pair_, fused.bits);
   }
-  // All sites but those at the lines of the set.
+  // All sites except those on the lines of the set.
   Set on_other_lines(const Set& set) const {
     Set result = all();
     for (std::size_t i = 0; i < set.sites; ++i) {
@@ -68,9 +68,8 @@ class Fusing {
   std::span<const cuda::ContractionSite> sites_;
 };
 
-// Finds a set of one or two sites. Prefers the first set that is sufficient (fused alone, it gives the verdict) and
-// necessary (with all others fused, the verdict changes). Otherwise returns the first of the smallest sufficient sets,
-// or nothing.
+// Finds a set of one or two sites. Prefers the first set that is sufficient (fusing only it gives the verdict) and
+// necessary (fusing all others does not). Otherwise returns the first of the smallest sufficient sets, or nothing.
 std::optional<Set> one_or_two(const Fusing& kernel, Verdict verdict) {
   std::vector<Set> enough;
   Set set = kernel.none();
@@ -92,7 +91,7 @@ std::optional<Set> one_or_two(const Fusing& kernel, Verdict verdict) {
   return enough.empty() ? std::nullopt : std::optional(enough.front());
 }
 
-// Removes sites, the last one first, while the verdict stays the same; stops when no site can be removed.
+// Removes sites, from the last to the first, as long as the verdict stays the same.
 Set reduced(const Fusing& kernel, Set set, Verdict verdict) {
   for (int left = set.size() + 1; set.size() < left;) {
     left = set.size();
@@ -113,7 +112,7 @@ Blame blame(const Lane& lane, const AnyPair& pair, const std::function<void()>& 
   if (verdict == kernel.verdict(kernel.none())) return {};
   const std::optional<Set> few = one_or_two(kernel, verdict);
   const Set set = few ? *few : reduced(kernel, kernel.all(), verdict);
-  // While the sites outside `needed` are sufficient too, adds a sufficient set of these sites.
+  // As long as the sites outside `needed` are also sufficient, adds a sufficient set of them.
   Set needed = set;
   while (kernel.verdict(others(needed)) == verdict) {
     const Set more = reduced(kernel, others(needed), verdict);

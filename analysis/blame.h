@@ -12,11 +12,11 @@
 namespace graze::analysis {
 
 struct Blame {
-  std::vector<cuda::ContractionSite> sites;  // if only these are fused, the lane gives its verdict; in program order
-  bool smallest = true;                      // no smaller set gives the verdict
-  bool lines_decide = false;                 // with the products of these lines rounded and all others fused, the
-                                             // verdict is that of the source without contraction
-  std::string why_not;                       // why the search did not finish; empty if it did
+  std::vector<cuda::ContractionSite> sites;  // fusing only these gives the lane's verdict; in program order
+  bool smallest = true;                      // whether no smaller set gives the verdict
+  bool lines_decide = false;                 // whether rounding only these lines' products
+                                             // gives the verdict without contraction
+  std::string why_not;                       // the reason if the search did not finish
 };
 
 // Prefers a set of one or two sites that is also necessary: with all other sites fused, the verdict is that of the

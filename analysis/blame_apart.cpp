@@ -7,8 +7,8 @@
 namespace graze::analysis {
 
 Blame blame_apart(const Lane& lane, const AnyPair& pair, double seconds) {
-  // The result: whether the set is the smallest, whether its lines decide, then its sites as raw memory. The sites'
-  // pointers to text are valid in both processes.
+  // The result: `smallest`, `lines_decide`, then the sites as raw memory. The sites' pointers to text are valid in both
+  // processes.
   std::string bytes;
   const Ended ended = run_apart(
       lane, seconds,

@@ -25,9 +25,9 @@ DecidingNumber told(const Lane& lane, const std::vector<subjects::Epsilon>& numb
   return result;
 }
 
-// A number that is far below all of these, but whose products do not underflow at once.
+// A number far below all of these, but large enough that its products do not underflow at once.
 double far_below(const std::vector<subjects::Epsilon>& numbers) {
-  constexpr double kAboutFltEpsilon = 1e-7;  // the source has the name FLT_EPSILON, but not its value
+  constexpr double kAboutFltEpsilon = 1e-7;  // for FLT_EPSILON, whose value is not in the source
   double least = 1;
   for (const subjects::Epsilon& number : numbers) least = std::min(least, number.value.value_or(kAboutFltEpsilon));
   return std::max(least * 1e-9, subjects::kNegligible);
@@ -61,7 +61,7 @@ std::optional<InitialValues> by_initial_values(const Lane& lane, Verdict truth,
         subjects::changed(lane, {.flags = {fmt::format("-ftrivial-auto-var-init={}", zero ? "zero" : "pattern")}});
     if (!build) return std::nullopt;
     const Verdict verdict = verdict_of(*build);
-    if (verdict == Verdict::unstable) return std::nullopt;  // something else changes it
+    if (verdict == Verdict::unstable) return std::nullopt;  // something else changes the verdict
     right[zero] = verdict == truth;
   }
   const auto word = [](bool is_right) { return is_right ? "right" : "wrong"; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests causes that are found by building a user's source again with a change.
+// Tests causes that are found by changing and rebuilding a user's source.
 #include "analysis/changed_source.h"
 
 #include <fmt/format.h>
@@ -54,11 +54,11 @@ class ExperimentsOnSources : public testing::Test {
 
 bool has(const std::string& text, std::string_view part) { return text.find(part) != text.npos; }
 
-// These triangles intersect, and their coordinates have more bits than small integers.
+// These triangles intersect. Their coordinates are not small integers, so products round.
 const Pair kFine{{{0.0117f, 0.0231f, 0.0119f}, {4.0177f, 0.0313f, 0.0171f}, {0.0239f, 4.0191f, 0.0113f}},
                  {{1.0133f, 1.0171f, -1.0193f}, {1.0271f, 1.0131f, 1.0119f}, {3.0117f, 3.0213f, 1.0157f}}};
 
-// With a negligible number in place of the unit, the products of the wrong comparison underflow, so the code is right.
+// With a negligible unit, the products in the wrong comparison underflow, which makes the code right.
 TEST_F(ExperimentsOnSources, AUnitIsNoEpsilon) {
   const Lane& lane = opened(
       "units", std::string(kHead) +
@@ -86,7 +86,7 @@ TEST_F(ExperimentsOnSources, AUnitIsNoEpsilon) {
   EXPECT_NE(one.cause, Cause::absolute_epsilon);
 }
 
-// Another weight makes the code right on some pairs, by luck.
+// On some pairs, another weight makes the code right by luck.
 TEST_F(ExperimentsOnSources, AWeightIsNoEpsilon) {
   const Lane& lane =
       opened("weighs", std::string(kHead) + "  return a[0] + 0.05f * 20 * a[4] < b[0] + 0.05f * 20 * b[7];\n}\n");
@@ -129,8 +129,7 @@ TEST_F(ExperimentsOnSources, ANumberThatDecidesAtEveryScaleIsARelativeEpsilon) {
   }
 }
 
-// The function of doubles is right, so the verdict's change with the scale may be underflow.
-// Contraction makes this code wrong here. A build without contraction is right with a negligible epsilon, but the
+// Contraction makes this code wrong here. With a negligible epsilon, the build without contraction is right, but the
 // contracted build is not.
 TEST_F(ExperimentsOnSources, AnEpsilonIsTriedInTheLanesOwnBuild) {
   opened("apart", R"(struct V { float x, y, z; };
@@ -173,7 +172,7 @@ bool intersects(const float a[9], const float b[9]) {
   EXPECT_GT(wrong, named);
 }
 
-// A build with other flags or types shows nothing about code that selects code by them.
+// If a source selects code by flags or types, a build with other flags or types shows nothing about this code.
 TEST_F(ExperimentsOnSources, CodeSelectedByTheBuildIsNotSettledByOtherBuilds) {
   const std::string boxes =
       "  for (int c = 0; c < 3; ++c) {\n"
@@ -208,8 +207,8 @@ TEST_F(ExperimentsOnSources, ANumberBesideAnOpenUnderflowIsNotSettled) {
   EXPECT_FALSE(has(one.evidence, "larger scales")) << one.evidence;
 }
 
-// If the compiler initialises arrays, the machine code changes, and spills of an x87 may change with it. This code
-// measures the size of its own machine code to show such a change.
+// Initialising arrays changes the machine code, and on an x87 may change which values are spilled. To show such a
+// change, this code measures the size of its own machine code.
 TEST_F(ExperimentsOnSources, OtherMachineCodeIsNoVariableWithoutAValue) {
   const Lane& lane = opened("measures", R"(
 extern "C" __attribute__((visibility("hidden"))) const char begin_here[], end_here[];
@@ -236,7 +235,8 @@ bool intersects(const float a[9], const float*) { return fifth(a) == a[5] && end
   for (const Pair& pair : {kFine, small}) EXPECT_NE(found(lane, pair).cause, Cause::uninitialised);
 }
 
-// If any value makes the code right, only the compiler's warning shows the variable, and rounding must be ruled out.
+// If any value makes the code right, only the compiler's warning points to the variable, and rounding must be ruled
+// out.
 TEST_F(ExperimentsOnSources, AVariableThatTheCompilerWarnsOfIsSettledOnSmallIntegers) {
   const Lane& lane = opened("unset", std::string(kHead) + R"(  int way;
   if (a[0] > 100) way = 1; else if (a[0] > 50) way = 2;
@@ -269,8 +269,7 @@ TEST_F(ExperimentsOnSources, AnEditedSourceIsNamedAsAnExperimentThatWasNotMade) 
   EXPECT_TRUE(has(found(lane, kFine).evidence, kNotMade));
 }
 
-// The source has six numbers. If any of them is changed, the code is right on the pair, but not on all images of the
-// pair.
+// The source has six numbers. Changing any of them makes the code right on the pair, but not on all of its images.
 TEST_F(ExperimentsOnSources, VerdictsOfChangedBuildsCountToo) {
   std::string text = std::string(kHead) + "  if (a[0] > 0 && a[2] < 0) return false;\n  float least = 1;\n";
   for (int i = 1; i <= 6; ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A foreign subject's convention excludes some kinds of pairs. Its verdicts on those pairs are neither right nor wrong.
+// A subject's convention excludes some kinds of pairs. The subject's verdicts on them are neither right nor wrong.
 #pragma once
 
 #include <span>
@@ -20,8 +20,8 @@ inline bool by_convention(const Lane& lane, Verdict verdict, const AnyPair& pair
   return visit(pair, [&](const auto& own) { return by_convention(lane, verdict, own, truth); });
 }
 
-// Returns the verdicts, with the truth in place of those that differ by convention. Verdicts that still differ from the
-// truth are wrong or declined.
+// Replaces verdicts that differ by convention with the truth. Returned verdicts that differ from the truth are wrong or
+// declined.
 std::vector<Verdict> excused(std::span<const Lane* const> lanes, std::vector<Verdict> verdicts, const AnyPair& pair,
                              const Relation& truth);
 

@@ -33,7 +33,7 @@ int log2_cube(Sources sources) {
   }
   std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
   const double median = sizes[sizes.size() / 2];
-  constexpr int kMost = 960;  // so that a tolerance is a finite double, and not 0
+  constexpr int kMost = 960;  // keeps tolerances finite and above 0
   return median > 0 && std::isfinite(median) ? std::clamp(3 * std::ilogb(median), -kMost, kMost) : 0;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The curves of `graze tune`: tolerances swept over their range, at all sites or at one site.
+// The curves of `graze tune`: errors as a tolerance varies over its range, at all sites or at one site.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +15,14 @@ namespace graze::analysis {
 // The range of tolerances, as powers of two. Absolute tolerances are in units of the cube of a typical length.
 inline constexpr double kLeastTolerance = -60, kMostTolerance = 20;
 
-// The number in the name of one tolerance, "rel:24" or "separation=abs:1e-6".
+// The number in a tolerance's name, such as "rel:24" or "separation=abs:1e-6".
 double tolerance_of(const std::string& policy);
 
 // The name of a tolerance: "separation=abs:1e-06"; without a site, "abs:1e-06".
 std::string tolerance(const std::string& site, bool relative, double value);
 
-// log2 of the cube of the sources' typical size: the median of the largest differences of coordinates within a pair.
+// log2 of the cube of the pairs' typical size. A pair's size is its largest difference of coordinates; the typical size
+// is the median.
 int log2_cube(Sources sources);
 
 // The numbers low, low + step, …, high.
@@ -71,9 +72,9 @@ void sweep_curves(std::vector<CurveOf<Point>>& curves, int cube, const SweepPoli
   });
 }
 
-// Like sweep_curves, for an absolute curve each of whose points takes a build. The curve has fewer points: 0, every
-// fourth power of two, and smaller steps around the best point. The constant may bound a length, an area or a volume,
-// so the range is wide.
+// Like sweep_curves, but for absolute curves whose every point takes a build. Each curve has fewer points: 0, every
+// fourth power of two, and smaller steps around the best point. The range is wide, because the constant may bound a
+// length, an area or a volume.
 template <class Point, class SweepPolicies, class Best>
 void sweep_values(std::vector<CurveOf<Point>>& curves, int cube, const SweepPolicies& sweep, const Best& best) {
   const int size = cube / 3;  // log2 of a typical length
@@ -86,7 +87,7 @@ void sweep_values(std::vector<CurveOf<Point>>& curves, int cube, const SweepPoli
   for (const double step : {1.0, 0.25}) {
     add_points(curves, 0, sweep, [&](const CurveOf<Point>& curve) {
       const double value = tolerance_of(curve.points[static_cast<std::size_t>(best(curve))].policy);
-      const double at = std::round(4 * std::log2(value)) / 4;  // the value in its name is rounded
+      const double at = std::round(4 * std::log2(value)) / 4;  // the name holds a rounded value
       return std::isfinite(at) ? steps(at - 3 * step, at + 3 * step, step) : std::vector<double>();
     });
   }

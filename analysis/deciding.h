@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds the comparisons that decide a wrong lane's verdict: the smallest set whose correction makes the verdict right.
-// Correcting a comparison changes only its outcome, to the outcome that exact arithmetic gives at that point of the
-// same path. No value changes. If the outcome selects a value (the smaller end of a range, an absolute value), the lane
-// continues with the other value as it computed it. All later steps run as in the lane.
+// A corrected comparison takes the outcome that exact arithmetic gives at that point of the same path. No value
+// changes. If the outcome selects a value (the smaller end of a range, an absolute value), the lane continues with the
+// other value as it computed it. All later steps run as in the lane.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace graze::analysis {
 
-// A comparison whose outcome is wrong once the set's earlier comparisons are corrected.
+// A deciding comparison. Its outcome is wrong once the earlier ones of its set are corrected.
 struct Decider {
   std::size_t place;  // index in that run's trace
   Seen<double> seen;
@@ -30,10 +30,10 @@ struct Decider {
   }
 };
 
-// The size of the largest sets that the search tries.
+// The search tries no larger sets.
 inline constexpr int kMostDeciding = 4;
 
-// Returns the trace of a run along this path without the cause: one entry for each value or comparison.
+// Returns the trace of a run along this path without the cause, with one entry for each value or comparison.
 using WithoutCause = std::function<Trace<double>(const Path&)>;
 
 // Returns the smallest set; among equally small sets, the first in order of execution. Empty if no set of up to
@@ -43,8 +43,8 @@ using WithoutCause = std::function<Trace<double>(const Path&)>;
 std::vector<Decider> deciding_comparisons(const Lane& lane, const AnyPair& pair, Verdict truth, const Replay& replay,
                                           const WithoutCause& without_cause);
 
-// Whether the comparison's outcome is right without the cause, or one of its operands is not finite. A non-finite
-// operand counts as an effect of the cause, even if rounding alone would be wrong too.
+// Whether the comparison's outcome is right without the cause, or an operand is not finite. A non-finite operand counts
+// as an effect of the cause, even if rounding alone would make the outcome wrong too.
 bool is_by_cause(const Decider& decider, const WithoutCause& without_cause);
 
 }  // namespace graze::analysis

@@ -57,7 +57,7 @@ void compare_block(std::span<const BasicPair<Coordinate>> pairs, const Records& 
   }
 }
 
-// Calls f<Algorithm, Real>() for the lane's algorithm and scalar.   Requires: a lane in double, for doubles.
+// Calls f<Algorithm, Real>() for the lane's algorithm and scalar.   Requires: for doubles, a lane in double.
 template <class Coordinate, class F>
 void for_lane(const Lane& lane, const F& f) {
   const auto call = [&]<class... Algorithm>(const std::tuple<Algorithm...>*) {
@@ -172,7 +172,7 @@ RunsBeside runs_of_both(const LanesCompared& lanes, const BasicPair<Coordinate>&
 RunsBeside runs_beside(const LanesCompared& lanes, const AnyPair& pair) {
   RunsBeside runs = visit(pair, [&](const auto& own) { return runs_of_both(lanes, own); });
   const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
-  std::erase_if(runs.values, [&](const ValueBeside& value) {  // a question about one value has no second value
+  std::erase_if(runs.values, [&](const ValueBeside& value) {  // some questions have only one value
     return static_cast<std::size_t>(value.which) >= questions[static_cast<std::size_t>(value.question)].of.size();
   });
   return runs;
@@ -257,7 +257,7 @@ namespace {
 
 bool is_rounded(const Lane& lane) { return info_of(lane.variant).arithmetic == Arithmetic::rounded; }
 
-// Compares on a device.   Returns: false if it cannot, or if the host's values differ from the device's.
+// Compares on a device.   Returns: false if that is not possible, or if the host's values differ from the device's.
 bool compare_on_device(const LanesCompared& lanes, const strata::PairSource& source, DiscrepancyCounts& to) {
   const Lane &first = *lanes.first, &second = *lanes.second;
   if (!cuda::records_on_device(first) || !cuda::records_on_device(second)) return false;
@@ -280,7 +280,7 @@ Discrepancies discrepancies(const DiscrepancySpec& spec) {
       nothing.emplace_back(spec.sources.size(), DiscrepancyCounts(lanes.first->algorithm));
     return nothing;
   };
-  const tbb::global_control limit = thread_limit(spec.threads);  // also for the host's part of comparisons on a device
+  const tbb::global_control limit = thread_limit(spec.threads);  // for the host's part on a device too
   Discrepancies on_device = nothing_yet();
   std::vector<std::vector<bool>> done(spec.lanes.size(), std::vector<bool>(spec.sources.size()));
   for (std::size_t l = 0; l < spec.lanes.size() && spec.on_device; ++l) {

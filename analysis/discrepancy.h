@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the values of two lanes of one algorithm and scalar: by how much they differ, which is nearer to the exact
-// value, and whether a sign, a comparison or the verdict differs. core/discrepancy/count.h describes the counts.
+// Compares the values that two lanes of one algorithm and scalar compute: how much they differ, which is nearer to the
+// exact value, and whether a sign, a comparison or the verdict differs. core/discrepancy/count.h describes the counts.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@
 
 namespace graze::analysis {
 
-// Counts by the layout of core/discrepancy/count.h. Pairs that are not finite are not counted.
+// Counts in the layout of core/discrepancy/count.h. Pairs that are not finite are not counted.
 struct DiscrepancyCounts {
   std::vector<std::uint64_t> counts;
-  std::vector<std::uint64_t> maxima;  // band_maxima::kFields for each question, bits of doubles
-  // For each lane, the pairs on which its verdict differs from that of its recorded run, which is compiled separately.
+  std::vector<std::uint64_t> maxima;  // bits of doubles; band_maxima::kFields for each question
+  // For each lane, the number of pairs on which the recorded run, which is compiled separately, has another verdict.
   std::uint64_t unlike[2] = {0, 0};
 
   explicit DiscrepancyCounts(int algorithm = 0);
@@ -29,11 +29,11 @@ struct DiscrepancyCounts {
   friend bool operator==(const DiscrepancyCounts&, const DiscrepancyCounts&) = default;
 };
 
-// Records of a lane on the host: its own, or those of its twin. Null if there is none.
+// Records a lane's values on the host, from the lane or its twin. Null if neither can record.
 RecordBlock record_on_host(const Lane& lane);
 
-// Why the values of two lanes cannot be compared on the host. Empty if they can be compared: both lanes have the same
-// algorithm and scalar, and record their values.
+// Why the values of two lanes cannot be compared on the host. Empty if both lanes have the same algorithm and scalar,
+// and record their values.
 std::string why_not_compared(const Lane& l, const Lane& r);
 
 // Two lanes to compare. Their values are recorded on the host. Lanes in float are compared only on pairs of float32,
@@ -49,16 +49,16 @@ struct LanesCompared {
 // Otherwise returns null.
 const Lane* fused_of(const Lane& l, const Lane& r);
 
-// A value that at least one of two lanes compares. Values are in the order of the first lane's run; those that only the
-// second lane compares come last.
+// A value that at least one of two lanes compares. Values are in the order of the first lane's run, followed by those
+// that only the second lane compares.
 struct ValueBeside {
   int question, which;                  // which: index in Question::of
   std::optional<double> first, second;  // nothing if the lane did not compute it
   bool compared = false;                // both lanes computed the same quantity
-  std::optional<Unrounded> unrounded;   // along the first lane's path; nothing for values that only the second lane has
+  std::optional<Unrounded> unrounded;   // along the first lane's path; empty if only the second lane has the value
 };
 
-// The runs of two lanes on one pair. Their choices are in the layout of RecordedPath.
+// The runs of two lanes on one pair.
 struct RunsBeside {
   std::vector<ValueBeside> values;
   RecordedPath first, second;
@@ -78,12 +78,12 @@ struct DiscrepancySpec {
   std::vector<LanesCompared> lanes;
   std::vector<strata::PairSource> sources;
   int threads = 0;         // 0: one for each core
-  bool on_device = false;  // comparisons whose lanes a device can record run there
+  bool on_device = false;  // whether comparisons run on the device if it can record both lanes
 };
 
 // counts[comparison][source]. The counts are the same on host and device, and for any number of threads. On a device,
-// the kernels of cuda-nofma compute a host lane's values. If the host lane is compared with cuda-nofma itself, the host
-// records its own values too. If any bit differs, the comparison runs on the host.
+// the cuda-nofma kernels compute a host lane's values. If the host lane is compared with cuda-nofma itself, the host
+// records its values too; if any bit differs, the comparison runs on the host.
 // Requires: no source of doubles if a lane is in float.
 using Discrepancies = std::vector<std::vector<DiscrepancyCounts>>;
 Discrepancies discrepancies(const DiscrepancySpec& spec);

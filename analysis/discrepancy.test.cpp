@@ -47,7 +47,6 @@ std::vector<strata::PairSource> sources_for(const Lane& of, std::uint64_t seed, 
   return sources;
 }
 
-// Returns the lanes that compute in double.
 std::vector<LanesCompared> in_double(std::vector<LanesCompared> lanes) {
   std::erase_if(lanes, [](const LanesCompared& both) { return both.first->scalar == Scalar::f32; });
   return lanes;
@@ -134,8 +133,8 @@ std::uint64_t expect_no_bit_differs(const LanesCompared& lanes, const Discrepanc
   return compared;
 }
 
-// Without contraction, the published algorithms give the same bits on every processor. So the kernels of cuda-nofma may
-// run on a device in place of a host lane.
+// Without contraction, the published algorithms give the same bits on every processor. So on a device, cuda-nofma
+// kernels can replace a host lane.
 TEST(Discrepancy, WithoutContractionNoBitDiffers) {
   const std::vector<LanesCompared> lanes = published(Variant::cpu, Variant::cuda_nofma);
   ASSERT_EQ(lanes.size(), 2u * kAlgorithmCount);
@@ -203,7 +202,8 @@ TEST(Discrepancy, APairOfFloat32CountsAsTheSamePairOfDoubles) {
   }
 }
 
-// With sources of both types at once, each source has the counts that it has alone. A fused line's counts are the sums.
+// With sources of both types in one call, each source gets the same counts as when counted alone, and a fused line gets
+// the sums.
 TEST(Discrepancy, SourcesOfBothTypesAddUp) {
   const LanesCompared lanes{lane("moller_1997/f64/cpu"), lane("moller_1997/f64/cuda-fma")};
   auto floats = strata::stratum_sources(3, 2'000, {"near_edge_edge", "thesis"});
@@ -235,14 +235,14 @@ TEST(Discrepancy, SourcesOfBothTypesAddUp) {
   }
 }
 
-// Measured by hand on 10^6 pairs of the thesis: some signed distance differs on 59.7 % of the pairs, its sign on 1 in
-// 532 and the verdict on 1 in 3,330. Those figures cover all six distances, but the algorithm computes the last three
-// only if the first three do not separate. So this test takes the last three from the pair with its triangles swapped.
+// A measurement by hand on 10^6 pairs from the thesis found that some signed distance differs on 59.7 % of the pairs,
+// its sign on 1 in 532, and the verdict on 1 in 3,330. That covers all six distances, but the algorithm computes the
+// last three only if the first three do not separate. So this test takes the last three from the swapped pair.
 TEST(Discrepancy, FindsTheSharesThatWereMeasuredByHand) {
   constexpr int kPairs = 100'000;
   const LanesCompared lanes{lane("interval_overlap/f32/cpu"), lane("interval_overlap/f32/cuda-fma")};
   const strata::PairSource source = strata::stratum_sources(2012, kPairs, {"thesis"})[0];
-  DiscrepancyCounts all(lanes.first->algorithm), all_swapped = all;  // one for each pair would be slow to allocate
+  DiscrepancyCounts all(lanes.first->algorithm), all_swapped = all;  // allocating one for each pair would be slow
   const auto counted_so_far = [&](int field) {
     std::uint64_t sum = 0;
     for (int q = 0; q < 3; ++q) sum += count(all, question_at(q) + field) + count(all_swapped, question_at(q) + field);
@@ -345,7 +345,7 @@ TEST(Discrepancy, IsTheSameForAnyNumberOfThreadsAndInParts) {
   EXPECT_EQ(sum, one[2][0]);
 }
 
-// A sink that keeps the indices of everything counted.
+// A sink that collects the indices of all counts that are incremented.
 struct Places {
   std::vector<int> added;
   std::vector<double> largest;
@@ -356,14 +356,14 @@ struct Places {
   bool has(int at) const { return std::find(added.begin(), added.end(), at) != added.end(); }
 };
 
-// Each error is in the bucket of the error that MPFR computes, if the bucket is known.
+// If an error's bucket is known, it is the bucket of the error that MPFR computes.
 TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
   std::uint64_t checked = 0, unknown = 0, others = 0;
   for (const auto& [first, second] : published(Variant::cpu, Variant::cuda_nofma)) {
     const std::vector<Question>& questions = questions_of(first->algorithm);
     const std::vector<std::uint8_t> degrees = degrees_of(first->algorithm);
     for (const strata::PairSource& source : sources_for(*first, 6, 12)) {
-      if (source.id.starts_with("extreme_scale")) continue;  // MPFR's ulps ignore the limits of the exponents
+      if (source.id.starts_with("extreme_scale")) continue;  // MPFR's ulps ignore exponent limits
       for (std::uint64_t i = 0; i < source.pairs; ++i) {
         const AnyPair pair = source.any_pair(i);
         DiscrepancyCounts of(first->algorithm);
@@ -385,8 +385,8 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
               return value.question == question && value.which == which;
             });
             ASSERT_NE(certified, runs.values.end());
-            // If a lane chooses the least of several values, MPFR computes the chosen value, but the counts take the
-            // true least.
+            // If a lane chooses the least of several values, MPFR computes the chosen one, but the counts use the true
+            // least.
             const bool other =
                 std::fabs(certified->unrounded->exact.hi - beside.exact) > 1e-12 * std::fabs(beside.exact);
             const bool subnormal = std::fabs(beside.exact) < (first->scalar == Scalar::f32 ? 0x1p-126 : 0x1p-1022);
@@ -401,7 +401,7 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
             }
             others += other;
             if (bucket == value_counts::kErrorNotFinite || other || subnormal) continue;
-            // In double the least and the second may differ by less than `other` sees.
+            // In double, the two least values may differ by less than the tolerance of `other`.
             if (!pair.floats && run.run.seen[k].site == Site::separation) continue;
             const double ulps = std::fabs(beside.ulps), most = bucket < 2 ? 0.5 * bucket : std::ldexp(1.0, bucket - 2),
                          least = bucket < 2    ? 0
@@ -422,8 +422,8 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
   EXPECT_LT(others * 10, checked);
 }
 
-// Each lane's value differs from the exact value by at most its bound of the rounding error, with and without
-// contraction, even if numbers underflow. So no sign can differ beyond two bounds.
+// With and without contraction, each lane's value differs from the exact value by at most the bound on its rounding
+// error, even if numbers underflow. So no sign can differ beyond two bounds.
 TEST(Discrepancy, BoundsOfTheRoundingErrorHold) {
   std::uint64_t bounded = 0, near = 0, unbounded = 0;
   for (const LanesCompared& lanes : published(Variant::cpu, Variant::cuda_fma)) {
@@ -448,7 +448,7 @@ TEST(Discrepancy, BoundsOfTheRoundingErrorHold) {
     }
   }
   EXPECT_GT(bounded, 80'000u);
-  EXPECT_GT(near, 8'000u);  // the bounds are not much too wide
+  EXPECT_GT(near, 8'000u);  // the bounds are not far too wide
   EXPECT_LT(unbounded * 5, bounded);
 }
 
@@ -493,8 +493,8 @@ Pair scaled(const Pair& pair, float by) {
   return result;
 }
 
-// If numbers overflow, no bound shows how near to zero the values are, so the band is unknown. If they underflow, the
-// bound of the smallest number applies.
+// If numbers overflow, no bound shows how near to zero the values are, so the band is unknown. If numbers underflow,
+// the bound for the smallest number applies.
 TEST(Discrepancy, TheBandIsUnknownWhereNothingIsSettled) {
   const Pair crossing{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1}, {1, 1, 2}, {2, 1, 2}}};
   const Lane &single = lane("moller_1997/f32/cpu"), &twice = lane("moller_1997/f64/cpu");
@@ -569,7 +569,7 @@ TEST(Discrepancy, VerdictsAloneAreThoseOfTheLanes) {
   }
 }
 
-// If one value of a lane is off by an ulp, the counts show that value, the sign of the difference and its band.
+// If one of a lane's values is off by an ulp, the counts show the value, the changed sign and its band.
 TEST(Discrepancy, FindsAPlantedUlp) {
   const Pair pair{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0.25f, 0.25f, 1}, {0.25f, 0.25f, 2}, {1, 1, 2}}};
   const Lane& of = lane("moller_1997/f32/cpu");
@@ -593,7 +593,7 @@ TEST(Discrepancy, FindsAPlantedUlp) {
   EXPECT_LT(places.largest[0], 1e-30);
 }
 
-// In a run with one fused line, only that line rounds differently, so every difference must start there.
+// If only one line is fused, every difference must start at that line.
 TEST(Discrepancy, OriginsFindTheLineThatWasPlanted) {
   const Lane& of = lane("moller_1997/f32/cuda-fma");
   const auto simpler = [](const AnyPair&, const AnyPair&) { return false; };
@@ -631,7 +631,7 @@ TEST(Discrepancy, OriginsFindTheLineThatWasPlanted) {
     starts -= start.by_line.back();
   }
   EXPECT_GT(fixed, 0u);
-  EXPECT_EQ(starts, grown);  // all are finite here
+  EXPECT_EQ(starts, grown);  // here all values are finite
   EXPECT_GT(starts, 1000u);
   const Origins again = origins(of, sources, 1000, 3, simpler);
   for (std::size_t l = 0; l < found.lines.size(); ++l) {

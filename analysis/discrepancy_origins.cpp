@@ -90,7 +90,7 @@ class Examination {
  private:
   static constexpr Mask kMask = std::is_same_v<Coordinate, float> ? &FusedLine::mask : &FusedLine::mask_of_doubles;
 
-  // Whether both runs have the value, with the same meaning, and with different bits.
+  // Whether both runs computed this value, with the same meaning and different bits.
   static bool differs(std::size_t i, const Question& question, int q, int which, const FusedRun<Real>& l,
                       const FusedRun<Real>& r) {
     if (!have_both(l.path(i), r.path(i), q, question.site)) return false;
@@ -181,8 +181,7 @@ Origins origins(const Lane& lane, const std::vector<strata::PairSource>& sources
   std::vector<strata::PairSource> first = sources;
   for (strata::PairSource& source : first) source.pairs = std::min(source.pairs, pairs);
   const std::vector<SourceBlock> blocks = blocks_of(first, kPairsTraced);
-  // Equally simple pairs are ordered by their coordinates and type, so that the simplest does not depend on the
-  // threads.
+  // Orders equally simple pairs by coordinates and type, so that the result does not depend on the threads.
   const Simpler before = [&](const AnyPair& l, const AnyPair& r) {
     if (simpler(l, r) != simpler(r, l)) return simpler(l, r);
     const double *of_l = coordinates(l.doubles), *of_r = coordinates(r.doubles);

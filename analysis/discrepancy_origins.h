@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the source lines at which the values of a contracted CUDA lane begin to differ from those of the same source
-// without contraction. Also finds how much such a difference grows until it reaches a comparison, and which lines
-// decide verdicts. The counts come from runs of the lane's twin, with the products of one line fused, or of all other
-// lines.
+// Finds the source lines at which a contracted CUDA lane's values begin to differ from those of the same source without
+// contraction. Also finds how much a difference grows before it reaches a comparison, and which lines decide verdicts.
+// The counts come from runs of the lane's twin in which only one line is fused, or all lines but one.
 #pragma once
 
 #include <functional>
@@ -20,24 +19,25 @@ struct FusedLine {
   std::vector<std::uint64_t> mask, mask_of_doubles;  // its sites in the kernel of each coordinate type
   std::uint64_t values = 0;                          // fusing it alone changes this many values
   std::uint64_t verdicts_alone = 0;                  // fusing it alone changes this many verdicts
-  std::uint64_t verdicts_fixed = 0;  // how many verdicts that all contractions together change are changed back if
-                                     // this line's products are rounded
-  std::optional<AnyPair> simplest;   // the simplest pair in the two counts above
+  std::uint64_t verdicts_fixed =
+      0;  // verdicts that all contractions together change, and that rounding only this line's products restores
+  std::optional<AnyPair> simplest;  // the simplest pair in the two counts above
 };
 
-// For values that differ: counts of the first line that makes a value differ when only that line is fused.
+// Counts of differing values by the line where the difference starts: the first line that makes the value differ when
+// only that line is fused.
 struct Start {
-  std::vector<std::uint64_t> by_line;  // by line; the last entry counts values that no line alone makes differ
-  // growth[k]: fusing the line, which changes its result by at most an ulp, moves the value by 2^k to 2^(k+1) ulps.
-  // Products, quotients and roots pass a relative error on; only sums whose terms cancel make it grow.
+  std::vector<std::uint64_t> by_line;  // by line; the last entry counts values for which no single line suffices
+  // growth[k]: fusing the line changes its result by at most an ulp, and moves the value by 2^k to 2^(k+1) ulps.
+  // Products, quotients and roots pass on a relative error; only sums whose terms cancel amplify it.
   std::array<std::uint64_t, 64> growth = {};
 };
 
-// Orders pairs, the simpler one first.
+// Whether the first pair is simpler.
 using Simpler = std::function<bool(const AnyPair&, const AnyPair&)>;
 
 struct Origins {
-  std::vector<FusedLine> lines;                 // in program order; those only in the kernel for doubles come last
+  std::vector<FusedLine> lines;                 // in program order; lines only in the kernel for doubles come last
   std::map<std::pair<int, int>, Start> starts;  // by value: the number of its question, and 0 or 1
   std::uint64_t pairs = 0, verdicts = 0;        // pairs examined; those on which contraction changes the verdict
 };
@@ -46,7 +46,8 @@ struct Origins {
 bool has_origins(const Lane& lane);
 
 // Examines the first `pairs` pairs of each source. `simpler` orders pairs for FusedLine::simplest.
-// Does not depend on the number of threads.   Requires: has_origins; sources of doubles only for a lane in double.
+// The result does not depend on the number of threads.   Requires: has_origins; sources of doubles only for a lane in
+// double.
 Origins origins(const Lane& lane, const std::vector<strata::PairSource>& sources, std::uint64_t pairs, int threads,
                 const Simpler& simpler);
 

@@ -26,10 +26,10 @@ class UnderEpsilon {
  private:
   const Lane& lane_;
   const subjects::TunableSource& source_;
-  std::map<std::string, std::unique_ptr<subjects::ForeignProcesses>> built_;  // by policy; these processes do not run
+  std::map<std::string, std::unique_ptr<subjects::ForeignProcesses>> built_;  // by policy; never started
 };
 
-// Decides under each policy, in processes that run as long as this object lives. The empty policy is the lane itself.
+// Decides under each policy. The processes live as long as this object. The empty policy is the lane itself.
 class EpsilonDeciders {
  public:
   explicit EpsilonDeciders(UnderEpsilon& under) : under_(under) {}

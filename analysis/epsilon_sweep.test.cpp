@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Finds boxes that overlap by more than kEps: too many if kEps is negative, and too few if it is large.
+// Finds boxes that overlap by more than kEps. A negative kEps finds too many, a large one too few.
 constexpr const char* kBoxes = R"(#include "own.h"
 const float kEps = 0.75f;
 int intersects(const float a[9], const float b[9]) {
@@ -47,7 +47,7 @@ class EpsilonSweep : public testing::Test {
   const std::vector<strata::PairSource> sources_ = strata::stratum_sources(3, 2000, {"uniform", "lattice"});
 };
 
-// The changed source finds own.h in the folder of the original.
+// The changed source finds own.h in the original's folder.
 TEST_F(EpsilonSweep, TheTextAsItIsDecidesLikeTheLane) {
   const auto source = subjects::tunable_source(lane_, "");
   const auto same = subjects::rebuilt(lane_, source.text, lane_.scalar);

@@ -96,11 +96,11 @@ class Trial {
       if (images.cause == Cause::rounding && holds_determinants(pair_, Scalar::f64)) images.cause = Cause::logic;
     }
     if (images.cause == Cause::logic && !ask_.in_float64() && !holds_determinants(pair_, lane_.scalar))
-      images.cause = Cause::rounding;  // there is no evidence for either, and determinants of these numbers round
+      images.cause = Cause::rounding;  // nothing tells logic from rounding, and determinants of these numbers round
     return open(std::move(images));
   }
 
-  // Code with an epsilon that also rounds too much: neither doubles nor a negligible number alone makes it right.
+  // For code with an epsilon that also rounds too much: only doubles and a negligible number together make it right.
   std::optional<Experiment> by_number_in_doubles() const {
     const auto number = deciding_number(
         lane_, [this](const DecideBlock& block) -> bool { return ask_.asked(block, {pair_})[0]; },
@@ -180,8 +180,7 @@ class Trial {
            kMostFactors * (size_.largest_difference + 1) < limits().most;
   }
 
-  // The lane of the same code and compiler in which every operation is rounded. OpenCL has such a lane; null if there
-  // is none.
+  // The lane with the same code and compiler in which every operation is rounded, as OpenCL has. Null if there is none.
   const Lane* rounded_sibling(const subjects::Toolchain& toolchain) const {
     for (const Lane& lane : lanes()) {
       if (lane.info != lane_.info || lane.scalar != lane_.scalar || !lane.decide) continue;
@@ -191,7 +190,8 @@ class Trial {
     return nullptr;
   }
 
-  // Tries the toolchain's build with strict flags. Returns nothing if there is none, or if it is wrong too.
+  // Tries the toolchain's build with strict flags. Returns nothing if there is no such build, or if its verdict is
+  // wrong too.
   std::optional<Experiment> by_strict_build(const subjects::Toolchain& toolchain) const {
     constexpr Cause kCauses[] = {Cause::contraction, Cause::contraction, Cause::excess_precision, Cause::fast_math};
     const Cause cause = kCauses[static_cast<int>(toolchain.rounding)];
@@ -219,7 +219,7 @@ class Trial {
     return found;
   }
 
-  // Code that is wrong in exact arithmetic may be right on this pair by luck. Float64 or another scale reveals that.
+  // Code that is wrong in exact arithmetic may be right on this pair by luck. Float64 or another scale reveals this.
   Experiment by_build(const Lane& rounded, Cause cause, std::string evidence) const {
     return by_build(block_of(rounded), analysis::in_float64(rounded), cause, std::move(evidence));
   }
@@ -254,8 +254,9 @@ class Trial {
         });
   }
 
-  // Whether the lane is right at all scales above the turn and wrong at all below. Code that adds numbers of different
-  // units, such as lengths and areas, becomes wrong again at other scales. Code with a small epsilon does not.
+  // Whether the lane is right at all scales above the turn, and wrong at all scales below it. Code that adds numbers
+  // with different units, such as lengths and areas, becomes wrong again at other scales. Code with a small epsilon
+  // does not.
   bool turns_once(Turn turn) const {
     if (turn.right < turn.wrong) return false;
     auto near = ask_.tried(lane_, common(strictly_, {turn.wrong - 12, turn.right + 12}), 26);
@@ -304,11 +305,11 @@ class Trial {
     return !leaves ? Cause::rounding : upwards ? Cause::underflow : Cause::overflow;
   }
 
-  // The lane is right at all scales in range, so the pair is out of range. The lane turns wrong between the range and
-  // the pair.
+  // The lane is right at all scales in range, so the pair is out of range. The turn lies between the range and the
+  // pair.
   Experiment outside(Turn turn) const {
-    // Code that adds lengths and areas may be wrong here even without limits. For doubles no wider type can rule this
-    // out.
+    // Code that adds lengths and areas may be wrong here even without exponent limits. For doubles, no wider type can
+    // rule this out.
     constexpr bool kIsNarrow = sizeof(Real) == sizeof(float);
     const bool by_float64 = ask_.right_in_float64_at_every_scale();
     const std::string text = turn.text(),
@@ -387,8 +388,8 @@ class Trial {
   mutable std::optional<std::vector<PairOf>> wrong_images_;  // computed when first needed
   Scales strictly_{1, 0};        // scales at which even the longest products stay within the exponents
   bool turns_in_range_ = false;  // the verdict changes between two of these scales
-  Scales wrong_at_{1, 0};        // the tried scales at which usual products stay within the exponents; empty unless the
-                                 // lane is wrong at all of them
+  Scales wrong_at_{1, 0};        // tried scales at which usual products stay within the exponents; empty unless the
+                                 // lane is wrong at all of these
 };
 
 }  // namespace

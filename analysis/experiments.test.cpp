@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests causes that experiments find. Published algorithms run as foreign code, and their causes are compared with
+// Tests the causes that experiments find. Published algorithms run as foreign code, and their causes are compared with
 // those found from their steps. Other code has planted faults.
 #include "analysis/experiments.h"
 
@@ -51,7 +51,7 @@ const Lane& add_lane(const std::string& subject, Scalar scalar, Variant variant,
   return lanes().back();
 }
 
-// Like the function above, for a function that takes pairs of both types.
+// Like add_lane, but for a function that takes pairs of both types.
 template <class Decide>
 const Lane& add_lane_of_both(const std::string& subject, Scalar scalar, Variant variant, Decide decide) {
   return scalar == Scalar::f32 ? add_lane(subject, scalar, variant, decide)
@@ -82,7 +82,7 @@ std::uint64_t strata_of(PairTypes types) {
   return types == PairTypes::f32 ? strata::kStrataCount : strata::kDoubleStrataCount;
 }
 
-// Translates a cause from settled steps to the terms of experiments.
+// Whether the causes agree. Experiments divide `logic` further.
 bool agree(Cause by_steps, Cause by_experiment) {
   if (by_steps == Cause::logic)
     return by_experiment == Cause::logic || by_experiment == Cause::degenerate_input ||
@@ -90,7 +90,7 @@ bool agree(Cause by_steps, Cause by_experiment) {
   return by_steps == by_experiment;
 }
 
-// Compares the causes of published algorithms that run as foreign code with the causes from their steps.
+// Compares the causes that experiments find for published algorithms with the causes from their steps.
 struct Compared {
   std::map<std::pair<Cause, Cause>, int> settled;  // by steps, by experiment
   std::map<Cause, int> by_steps, open;
@@ -104,10 +104,10 @@ struct Compared {
       const auto of = [cause = cause](const auto& map) {
         return map.contains(cause) ? map.at(cause) : decltype(map.at(cause)){};
       };
-      fmt::print("{} by steps: {} of {} not settled by experiment, {} of these alike\n", name(cause), of(open), count,
+      fmt::print("{} by steps: {} of {} not settled by experiment, {} of these agree\n", name(cause), of(open), count,
                  of(unsettled)[0]);
     }
-    fmt::print("settled alike: {}\n", alike);
+    fmt::print("settled with equal causes: {}\n", alike);
   }
 };
 
@@ -128,7 +128,7 @@ Compared compared(std::span<const strata::PairSource> sources) {
   const auto compare = [&](const AnyPair& pair, const std::string& place) {
     const Verdict truth = visit(pair, [](const auto& own) { return truth_of(own); });
     for (const auto& [own, foreign] : both) {
-      if (!pair.floats && own->scalar == Scalar::f32) continue;  // the lane decides what float32 stores
+      if (!pair.floats && own->scalar == Scalar::f32) continue;  // this lane decides the pair as float32 stores it
       const std::vector<LaneExplanation> steps = accounts(pair, truth, {&own, 1});
       if (steps.empty() || (steps[0].settled != Settled::yes && steps[0].cause != Cause::fast_math)) continue;
       const std::vector<LaneExplanation> found = accounts(pair, truth, {&foreign, 1});
@@ -192,8 +192,8 @@ Pair integers(std::uint32_t& state, int largest) {
   return pair;
 }
 
-// If small integers show logic as the cause, the steps show logic too, except in interval_overlap. Its quotients,
-// rounded in either scalar, separate intervals that touch, in all orders and at all multiples.
+// If small integers show logic as the cause, the steps show logic too, except for interval_overlap. Its rounded
+// quotients separate touching intervals in either scalar, in all orders and at all multiples.
 TEST(Experiments, SmallIntegersShowNoRoundingAsLogic) {
   for (const bool with_doubles : {true, false}) {
     std::vector<std::pair<const Lane*, const Lane*>> both;
@@ -233,7 +233,7 @@ TEST(Experiments, SmallIntegersShowNoRoundingAsLogic) {
   }
 }
 
-// Calls act for the first pairs of all strata on which the lane is wrong and that `chosen` accepts.
+// Calls `act` for the first pairs of each stratum that `chosen` accepts and on which the lane is wrong.
 template <class Chosen>
 void for_each_wrong(const Lane& lane, const Chosen& chosen, const std::function<void(const Experiment&)>& act,
                     PairTypes types = PairTypes::f32) {
@@ -352,8 +352,8 @@ TEST(Experiments, FindWhatDependsOnOrder) {
   }
 }
 
-// Code that is wrong in all orders on small integers has an error of logic, with or without an epsilon. The evidence of
-// a cause that is not settled names two experiments.
+// Code that is wrong in all orders on small integers has a logic error, with or without an epsilon. If a cause is not
+// settled, its evidence names two experiments.
 TEST(Experiments, FindLogicOnSmallIntegers) {
   const auto contained = [](float epsilon) {
     return [epsilon](const Pair& pair) {

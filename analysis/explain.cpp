@@ -30,9 +30,9 @@ std::string line_of(const std::source_location& where) {
   return fmt::format("{}:{}", folder == std::string_view::npos ? file : file.substr(folder), where.line());
 }
 
-// A verdict may alternate between right and wrong as bits are added: until products are exact, or for ever if roots or
+// As bits are added, a verdict may alternate between right and wrong until products are exact, or for ever if roots or
 // quotients leave a tie open in every precision. Unless exact arithmetic was certain with kMostBits, a number of bits
-// counts as enough only if it is at most half of kMostBits.
+// is enough only if it is at most half of kMostBits.
 int bits_needed(int algorithm, const oracle::Exactly& exactly, const AnyPair& pair, Verdict truth) {
   const int least = pair.floats ? 24 : 53;
   const int bits = exactly.verdict == truth ? oracle::bits_needed(algorithm, pair.doubles, truth, least) : 0;
@@ -40,7 +40,7 @@ int bits_needed(int algorithm, const oracle::Exactly& exactly, const AnyPair& pa
   return !certain && bits > oracle::kMostBits / 2 ? 0 : bits;
 }
 
-// The pair's neighbours. Nudged pairs may have another truth than the pair, so the truth of each is computed.
+// The pair's neighbours. A nudged pair may have a different truth, so its truth is computed.
 template <class Real>
 struct Neighbours {
   using Pairs = std::vector<BasicPair<Real>>;
@@ -211,7 +211,7 @@ bool is_by_convention(const Lane& lane, Verdict verdict, const AnyPair& pair) {
          visit(pair, [&](const auto& own) { return by_convention(lane, verdict, own, relation_of(own)); });
 }
 
-// Says which number is beyond float32's range, or which number would make the verdict right if it were kept as a
+// Names the number that is beyond float32's range, or the number that would make the verdict right if it were kept as a
 // double.
 std::string what_rounding_decides(const DoublePair& pair, const Pair& stored, Verdict truth) {
   const float* c = coordinates(stored);
@@ -237,16 +237,18 @@ LaneExplanation account_of_stored(const Lane& lane, Verdict verdict, const Doubl
   LaneExplanation result = without_steps(lane, verdict, Cause::stored, true);
   result.experiment = what_rounding_decides(pair, stored, truth);
   result.beyond = !is_finite(stored);
-  result.slow = true;  // neighbours of a pair that the lane did not get would show nothing
+  result.slow = true;  // the lane did not get this pair, so the pair's neighbours would show nothing
   return result;
 }
 
-// The pair as a lane decides it, and its truth, which may differ from the given pair's if float32 changes the pair.
+// The pair as a lane decides it, and that pair's truth, which may differ from the given pair's if float32 changes the
+// pair.
 struct Own {
   AnyPair pair;
   Verdict truth;
 
-  // Whether the given pair has another truth, and the lane is right on this pair or float32 cannot hold it.
+  // Whether storing explains the verdict: this pair and the given one differ in truth, and the lane is right on this
+  // one, or float32 cannot hold it.
   bool explains(Verdict verdict, Verdict truth_of_given) const {
     const bool ended = verdict == Verdict::crashed || verdict == Verdict::timed_out;
     return truth != truth_of_given && (verdict == truth || (truth == Verdict::declined && !ended));
@@ -292,14 +294,14 @@ Cause cause_of(const Lane& lane, const AnyPair& given, Verdict truth_of_given) {
   result.lane = &lane;
   result.exactly = oracle::decide_exactly(lane.algorithm, pair.doubles);
   result.cause = first_cause(lane, pair, truth, result.exactly);
-  // If the cause is rounding, only the steps can tell whether the exponent range contributed.
+  // If rounding seems to be the cause, only the steps show whether the exponent range contributed.
   if (result.cause != Cause::rounding || !leaves_exponents(lane, pair)) return result.cause;
   add_steps(result, pair, truth);
   return refined(result, pair);
 }
 
 bool leaves_exponents(const Lane& lane, const AnyPair& pair) {
-  if (lane.foreign || lane.under || lane.exact) return false;  // it is not known, or exponents have no effect
+  if (lane.foreign || lane.under || lane.exact) return false;  // the answer is not known, or exponents have no effect
   const DecideBlock block = block_of(rounded_counterpart(lane));
   std::uint64_t intersects, declined;
   std::feclearexcept(FE_OVERFLOW | FE_UNDERFLOW);
@@ -377,11 +379,11 @@ Explanation explain(const AnyPair& pair, std::span<const Lane* const> lanes) {
     const Verdict verdict = decide_lane(*lane, pair);
     if (verdict != truth && is_by_convention(*lane, verdict, pair)) result.outside.push_back(lane);
   }
-  // The neighbours of the pair as float32 stores it, or of the pair itself.
+  // Neighbours of the pair as float32 stores it, and of the pair itself.
   std::tuple<std::optional<Neighbours<float>>, std::optional<Neighbours<double>>> around;
   std::map<std::pair<const AlgorithmInfo*, bool>, int> bits;
   for (LaneExplanation& lane : result.lanes) {
-    // If each verdict may time out or need a new process, only the pair itself is tried.
+    // If every verdict may time out or need a new process, only the pair itself is tried.
     if (lane.slow) continue;
     const AnyPair own = seen_by(*lane.lane, pair);
     int needed = 0;

@@ -28,12 +28,12 @@ namespace graze::analysis {
 //   logic        the algorithm gives the wrong verdict in exact arithmetic too
 //   contraction  the same source without contraction, on the same kind of processor, is right
 //   fast math    the same condition, for a lane whose operations the compiler may rewrite or approximate
-//   overflow, underflow   without contraction, the scalar's mantissa with unlimited exponents is right. Overflow if the
-//                upper limit alone makes it wrong, underflow if the lower limit alone does. If both or neither do, the
-//                cause is the limit that is exceeded first. This also covers pairs that need a longer mantissa as well,
-//                if the limit made the comparison go wrong
+//   overflow, underflow   without contraction, and with the scalar's mantissa but unlimited exponents, the lane is
+//                right. Overflow if the upper limit alone makes it wrong, underflow if the lower limit alone does. If
+//                both or neither do, the cause is the limit that is exceeded first. Pairs that also need a longer
+//                mantissa are included, if the limit made the comparison go wrong
 //   rounding     no other condition holds
-// Experiments find the cause for foreign code (experiments.h). The causes from absolute_epsilon on apply only to
+// For foreign code, experiments find the cause (experiments.h). The causes from absolute_epsilon on apply only to
 // foreign code, except policy:
 //   policy       the lane uses a policy, and the same lane without the policy is right, or the policy declined. If
 //                that lane is wrong too, its cause is reported as not settled.
@@ -61,9 +61,9 @@ std::string_view name(Cause cause);
 // The result of the audit of the cause (analysis/audit.h).
 enum class Settled {
   yes,
-  not_without,  // without the cause, the verdict is still wrong
+  not_without,  // removing the cause leaves the verdict wrong
   not_alone,    // the cause alone does not make the verdict wrong
-  not_by_few,   // correcting up to kMostDeciding comparisons does not make the verdict right (deciding.h)
+  not_by_few,   // no correction of up to kMostDeciding comparisons makes the verdict right (deciding.h)
   unknown       // the lane's computation is not known, or no experiment shows the cause
 };
 std::string_view name(Settled settled);
@@ -71,7 +71,7 @@ std::string_view name(Settled settled);
 // A value that the algorithm passed to its policy, or a comparison.
 struct Step {
   std::string line;                        // "core/algorithms/moller_1997.h:96"
-  std::string_view site;                   // of the value or comparison; empty for the algorithm's own comparison
+  std::string_view site;                   // site of the value or comparison; empty for the algorithm's own comparison
   std::string_view relation;               // empty for a value
   oracle::Beside left, right, difference;  // a single value is in `left`
   bool held = true;                        // in the lane's arithmetic
@@ -81,7 +81,7 @@ struct Step {
   bool is_undefined() const { return std::isnan(left.exact) || std::isnan(right.exact); }
 };
 
-// The lane is wrong on `wrong` out of `of` pairs with the same truth.
+// Counts over pairs with the same truth: the lane is wrong on `wrong` of the `of` pairs.
 struct WrongOf {
   int wrong, of;
 };
@@ -91,7 +91,7 @@ struct LaneExplanation {
   Verdict verdict;
   Cause cause;
   oracle::Exactly exactly;        // the algorithm's verdict in exact arithmetic
-  Evidence evidence;              // how well the steps are known to be the lane's own
+  Evidence evidence;              // how certain it is that the steps are the lane's own
   std::vector<Step> steps;        // in order: values and comparisons passed to the policy, and wrong comparisons
   Contraction rule;               // the contraction rule of the replay
   std::vector<Decider> deciding;  // the comparisons that decide, see deciding.h; empty for logic
@@ -100,16 +100,16 @@ struct LaneExplanation {
   Blame contractions;             // only for a cuda-fma lane whose verdict contraction changes
   bool cpu_is_right = false;      // for users' CUDA code with contractions: the cpu lane of the same source is right
   Settled settled;
-  int bits_needed;  // the shortest mantissa, at least the lane's own, that gives the right verdict, as does every
+  int bits_needed;  // the shortest mantissa, no shorter than the lane's, that gives the right verdict, as does every
                     // longer one up to kMostBits; 0 if there is none, or if it would be chance (see explain.cpp)
   std::array<bool, kCoordinates> matters;  // false: no nudge of the coordinate changes the truth or the lane's verdict
   WrongOf orders, mirrored, scalings;      // see neighbours.h
   std::string experiment;  // for lanes without steps (foreign, under a policy, or `stored`): the evidence for the cause
   std::string line;        // for foreign code: "mine.cpp:9", the line that decides; empty if it is not known
-  bool slow = false;       // for the same lanes: other pairs time out or fail, so no neighbours were tried
+  bool slow = false;       // for the same lanes: other pairs time out or fail, so neighbours were not tried
   bool beyond = false;     // for the cause `stored`: float32 cannot hold a number of the pair
 
-  // Whether the account comes from experiments, because the lane has no steps.
+  // Whether the account comes from experiments, because the lane's steps are not known.
   bool by_experiment() const { return lane->foreign || lane->under || cause == Cause::stored; }
 
   // The comparison to report: the first deciding one. Null if there is none, or if the algorithm itself is to blame.
@@ -136,9 +136,9 @@ std::vector<LaneExplanation> accounts(const AnyPair& pair, Verdict truth, std::s
 Cause cause_of(const Lane& lane, const AnyPair& pair, Verdict truth);
 
 // Whether a result leaves the scalar's exponent range when the lane's source runs without contraction. If false, the
-// cause is neither overflow nor underflow. The check is fast because it reads the processor's floating-point flags; it
-// may return true although no result leaves the range. Returns false for foreign code and for lanes under a policy, for
-// which this is not known.
+// cause is neither overflow nor underflow. The check is fast because it reads the processor's floating-point flags, but
+// it may return true although no result leaves the range. Returns false for foreign code and lanes under a policy, for
+// which the answer is not known.
 bool leaves_exponents(const Lane& lane, const AnyPair& pair);
 
 // Returns one English sentence about a wrong algorithm, for a bug report; empty if none of its lanes is wrong. It names
@@ -146,11 +146,11 @@ bool leaves_exponents(const Lane& lane, const AnyPair& pair);
 std::string sentence(const Explanation& explanation, const AlgorithmInfo* subject);
 
 // Returns one sentence for each wrong algorithm. For a user's CUDA code, a second sentence may name the lines that make
-// its verdict differ from that of cpu. It is added if rounding only the products of these lines gives the verdict of
-// cpu.
+// its verdict differ from the cpu lane's. It is added if rounding only the products of these lines gives the cpu lane's
+// verdict.
 std::vector<std::string> sentences(const Explanation& explanation);
 
-// Whether the sentence names lines that make CUDA code differ from cpu.
+// Whether the sentence names lines that make CUDA code differ from the cpu lane.
 bool tells_difference_from_cpu(std::string_view sentence);
 
 nlohmann::ordered_json to_json(const LaneExplanation& lane);

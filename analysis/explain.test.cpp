@@ -31,8 +31,8 @@ const LaneExplanation& lane_of(const Explanation& explanation, std::string_view 
   throw std::runtime_error(std::string(id) + " is not wrong");
 }
 
-// The values of a replay belong to the lane. Without contraction this holds by construction, and for CUDA the hash of
-// the values shows it. For contraction on the host, only the verdict can be compared.
+// A replay has the lane's own values: without contraction by construction, for CUDA by the hash of the values. For
+// contraction on the host, only the verdict can be compared.
 TEST(Replay, IsTheLanesOwnRun) {
   for (const Lane* lane : lanes_here()) {
     int pairs = 0, known = 0;
@@ -57,7 +57,7 @@ TEST(Replay, IsTheLanesOwnRun) {
   }
 }
 
-// A run that is led along its own path repeats itself. A run that is led along another path does not.
+// A run that is led along its own path repeats itself; along another path, it does not.
 TEST(Replay, CanBeLed) {
   const Lane& lane = *find_lane("projected_sat/f32/cpu");
   const Pair pair = strata::generate(7, strata::Stratum::near_edge_edge, 3);
@@ -126,7 +126,8 @@ TEST(Explain, AtAHugeScaleItOverflows) {
   EXPECT_FALSE(std::isfinite(lane.told()->left.lane));
 }
 
-// Without limits 24 bits would not be enough either, but the operand of the comparison is not a number.
+// Even without exponent limits, 24 bits would not be enough. But the comparison's operand is NaN, so the limit is the
+// cause.
 TEST(Explain, ARangeThatIsNotAllThatLacksIsStillTheCause) {
   const Pair pair = strata::generate(1, strata::Stratum::extreme_scale, 2280);
   const Explanation explanation = explain(pair, lanes_here());
@@ -170,8 +171,8 @@ TEST(Explain, WhatMoreBitsWouldHelpIsRounding) {
             std::string::npos);
 }
 
-// Tests near-coplanar pairs on which cuda-fma and cuda-nofma differ. The blamed sites cause the difference, and no
-// smaller set of sites does.
+// On near-coplanar pairs on which cuda-fma and cuda-nofma differ, the blamed sites cause the difference, and no smaller
+// set of sites does.
 TEST(Explain, FlipsByContractionAreBlamedOnSourceLines) {
   int flips = 0;
   for (std::uint64_t i = 0; i < 60; ++i) {
@@ -196,7 +197,7 @@ TEST(Explain, FlipsByContractionAreBlamedOnSourceLines) {
         return cuda::decide_fusing(*lane.lane, pair, fused);
       };
       EXPECT_EQ(verdict_without(all.size()), lane.verdict);
-      // Either each site is necessary, or the effect is undone only if all sites are rounded.
+      // Either each site is necessary, or only rounding all sites undoes the effect.
       const bool needed =
           std::all_of(blamed.begin(), blamed.end(), [&](std::size_t s) { return verdict_without(s) != lane.verdict; });
       EXPECT_TRUE(needed || lane.settled == Settled::yes || lane.cause == Cause::logic) << lane.lane->id << i;
@@ -225,7 +226,7 @@ TEST(Explain, ASentenceTellsOfACoplanarFlip) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
 }
 
-// For every pair, a wrong lane has a cause; unless the cause is logic, it has a wrong comparison.
+// Every wrong lane has a cause and, unless the cause is logic, a wrong comparison.
 TEST(Explain, EveryWrongLaneHasItsAccount) {
   std::set<Cause> causes;
   int wrong = 0, decisive = 0, many = 0, unknown = 0;
@@ -308,7 +309,8 @@ TEST(Neighbours, NudgesMoveOneCoordinateBothWays) {
   }
 }
 
-// The minimiser needs only the cause. If the processor raised no flag, MPFR finds no overflow or underflow either.
+// cause_of gives the cause that explain gives. If the processor raised no flag, MPFR finds no overflow or underflow
+// either.
 TEST(CauseOf, IsWhatExplainSays) {
   int wrong = 0, in_range = 0;
   std::set<Cause> seen;
@@ -333,8 +335,8 @@ TEST(CauseOf, IsWhatExplainSays) {
   EXPECT_LT(in_range, wrong);
 }
 
-// The lanes that decide pairs of doubles: lanes in float32, which decide the stored pairs, and lanes in double that
-// take pairs of doubles.
+// Lanes that can decide pairs of doubles: lanes in float32, which decide the stored pairs, and lanes in double that
+// take doubles.
 std::vector<const Lane*> lanes_of_doubles() {
   std::vector<const Lane*> result = lanes_here();
   std::erase_if(result, [](const Lane* lane) {
@@ -343,7 +345,7 @@ std::vector<const Lane*> lanes_of_doubles() {
   return result;
 }
 
-// Another computation confirms each cause, over all strata of doubles.
+// An independent computation confirms each cause, over all strata of doubles.
 TEST(ExplainDoubles, CausesAreTrue) {
   std::map<Cause, int> seen;
   int settled = 0, wrong = 0;

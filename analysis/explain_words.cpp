@@ -45,8 +45,8 @@ std::string words(const cuda::ContractionSite& site) {
   return inlined ? fmt::format("{} (inlined at {})", text(site.at), text(site.from)) : text(site.at);
 }
 
-// Names the compared value by its own site. If it has none and is compared with 0, uses the site of the first equal
-// value that was passed to the policy.
+// Names the compared value by its site. If the comparison has no site and compares with 0, uses the site of the first
+// equal value that was passed to the policy.
 std::string_view what(const LaneExplanation& lane, const Step& told) {
   const auto in_words = [](std::string_view site) -> std::string_view {
     return site == "plane_distance" ? "a signed distance"
@@ -87,8 +87,8 @@ std::string words(double x) {
 
 std::string exact_words(const oracle::Beside& value) { return std::isnan(value.exact) ? "NaN" : value.decimal; }
 
-// "a signed distance of exactly 0 into 1.2e-09". The lane itself computes no difference of the two numbers. If that
-// difference is not finite, names both: "two interval ends of exactly 3 and 4 into infinity and 4".
+// "a signed distance of exactly 0 into 1.2e-09". The lane never subtracts the two compared numbers. If their difference
+// is not finite, names both: "two interval ends of exactly 3 and 4 into infinity and 4".
 std::string turned(const LaneExplanation& lane, const Step& told) {
   if (told.is_undefined())
     return fmt::format("a division by exactly zero, after which no number is defined, into {} and {}",
@@ -103,7 +103,7 @@ std::string turned(const LaneExplanation& lane, const Step& told) {
 }
 
 // ", which turns a signed distance of exactly 0 into 1.2e-09, so that the comparison at … goes the wrong way".
-// replayed: words that say how this is known; may be empty.
+// replayed: words for how this is known; may be empty.
 std::string effect(const LaneExplanation& lane, std::string_view replayed) {
   const Step* told = lane.told();
   if (!told) return "";
@@ -194,7 +194,7 @@ std::string variant_of(const Lane& lane) {
   return std::string(lane.variant_name()) + (lane.policy.empty() ? "" : "/" + lane.policy);
 }
 
-// The cause that experiments found, with these experiments.
+// The cause that experiments found, and their evidence.
 std::string reason_by_experiment(const LaneExplanation& lane) {
   const auto words = [&]() -> std::string {
     switch (lane.cause) {
@@ -318,15 +318,15 @@ std::string sentence(const Explanation& explanation, const AlgorithmInfo* subjec
 
 namespace {
 
-// Tells what the sentence about a subject omits: other lines at which toolchains fuse, and other flags that prevent
-// this. Returns one sentence for each scalar, line and flag.
+// Adds what the sentence about a subject omits: other lines at which toolchains fuse products, and other flags that
+// prevent this. Returns one sentence for each scalar, line and flag.
 std::vector<std::string> by_toolchain(const Explanation& explanation, const AlgorithmInfo* subject) {
   using Account = std::tuple<Scalar, std::string, std::string>;
   const auto account = [](const LaneExplanation& lane) {
     return Account(lane.lane->scalar, lane.line, lane.experiment);
   };
   const LaneExplanation* first = representative(explanation, subject);
-  std::vector<std::pair<const LaneExplanation*, std::string>> accounts;  // a first lane and all names
+  std::vector<std::pair<const LaneExplanation*, std::string>> accounts;  // the first lane, and the names of all
   for (const LaneExplanation& lane : explanation.lanes) {
     if (lane.lane->info != subject || lane.lane->toolchain.empty() || lane.cause != Cause::contraction ||
         account(lane) == account(*first))
@@ -377,7 +377,7 @@ std::vector<std::string> sentences(const Explanation& explanation) {
       }
     }
   }
-  std::map<std::string, std::string> lanes_outside;  // by subject: its lanes, named within it
+  std::map<std::string, std::string> lanes_outside;  // by subject: the names of its lanes within the subject
   for (const Lane* lane : explanation.outside) {
     std::string& list = lanes_outside[std::string(lane->info->id)];
     list += (list.empty() ? "" : ", ") + lane->lane_name().within_subject();

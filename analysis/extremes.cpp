@@ -11,7 +11,7 @@ namespace graze::analysis {
 namespace {
 
 struct Limits {
-  double least, most;  // the lane is as right up to this share of errors: bounds, from those of the origin's share
+  double least, most;  // bounds on the share of errors up to which the lane is as right as at the origin
 };
 
 Limits limits_of(const ErrorsAt& origin) {

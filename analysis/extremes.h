@@ -14,14 +14,14 @@ struct ErrorsAt {
   std::uint64_t errors = 0, pairs = 0;
 };
 
-inline constexpr std::uint64_t kFewPairs = 100;  // fewer pairs at an exponent show nothing
+inline constexpr std::uint64_t kFewPairs = 100;  // an exponent with fewer pairs shows nothing
 inline constexpr double kRightShare = 1e-3;      // a lane that errs on at most this share is right
-inline constexpr double kAsRight = 2;            // as right as another: errs at most this many times as often
+inline constexpr double kAsRight = 2;            // a lane that errs at most this many times as often is as right
 
 // The result in one direction from the origin.
 struct RightSide {
   int right = 0;             // the lane is shown to be as right up to this exponent
-  int last = 0;              // the last exponent with pairs, even if they are too few
+  int last = 0;              // the last exponent with any pairs, even too few
   std::optional<int> worse;  // the first exponent at which the lane is shown to be less right
 };
 

@@ -32,7 +32,7 @@ TEST(RightRange, EndsBeforeTheFirstExponentThatIsNotShownToBeAsRight) {
   EXPECT_EQ(range->up.last, 40);
 }
 
-// A lane with errors on up to 0.1 % of the pairs is as right as one without errors, if enough pairs show it.
+// A lane that errs on at most 0.1 % of the pairs counts as one without errors, if there are enough pairs.
 TEST(RightRange, TakesALaneThatHardlyErrsForRight) {
   EXPECT_TRUE(right_range(Points{{0, 0, 4'000}, {8, 0, 4'000}})->settled);
   EXPECT_FALSE(right_range(Points{{0, 0, 3'500}, {8, 0, 4'000}})->settled);

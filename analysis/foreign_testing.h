@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: foreign code that is a function of the test.
+// For tests: foreign code that runs a function of the test itself.
 #pragma once
 
 #include <algorithm>

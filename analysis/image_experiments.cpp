@@ -36,8 +36,8 @@ bool is_degenerate(const BasicPair<Real>& pair) {
   return hulls.dimension_a < 2 || hulls.dimension_b < 2;
 }
 
-// Multiplies all coordinates, then adds one axis to another if they differ. This changes neither the truth nor, if the
-// factor is 1, any determinant; but it changes longer products.
+// Multiplies all coordinates by `factor`, then adds axis `from` to axis `to` if they differ. This changes longer
+// products, but not the truth, nor, if the factor is 1, any determinant.
 struct Image {
   int factor, from, to;
 };
@@ -52,7 +52,7 @@ std::vector<BasicPair<Real>> changed(std::vector<BasicPair<Real>> pairs, const I
   return pairs;
 }
 
-// Translates each vertex to the origin, if that is exact.
+// The translations that move a vertex to the origin, if they are exact.
 template <class Real>
 std::vector<BasicPair<Real>> to_vertices(const BasicPair<Real>& pair, const Size& size) {
   std::vector<BasicPair<Real>> result;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Experiments on foreign code with images of the pair, which have the pair's truth. One experiment is for pairs on
-// which nothing rounds, and one for pairs on which something may round.
+// Experiments on foreign code with images of a pair, which have the pair's truth: one for pairs on which nothing
+// rounds, and one for pairs on which something may round.
 #pragma once
 
 #include <functional>
@@ -21,16 +21,16 @@ using Ask = std::function<std::vector<bool>(const std::vector<BasicPair<Real>>&)
 template <class Real>
 bool has_small_integers(const BasicPair<Real>& pair, Scalar scalar);
 
-// Whether no sum of 32 products of up to three coordinates or differences rounds, such as a determinant's.
+// Whether no sum of 32 products of up to three coordinates or differences, such as a determinant, rounds.
 template <class Real>
 bool holds_determinants(const BasicPair<Real>& pair, Scalar scalar);
 
 // The cause, if the products of has_small_integers do not round in the widest arithmetic in which the code is known to
 // be wrong. Returns nothing if scaling the pair by 3 or 5 changes the orders in which the lane is wrong, because then
-// quotients or roots may decide. Unless products of kMostFactors do not round either, adding one axis to another must
-// not change these orders. Rounded quotients may remain the real cause: on such pairs, they were so for 18 of 18,237
-// causes of published algorithms, all of interval_overlap.   Requires: has_small_integers; the lane is wrong on the
-// pair at all larger scales.
+// quotients or roots may decide. If products of kMostFactors may round, adding one axis to another must not change
+// these orders either. Rounded quotients can still be the real cause: they were for 18 of 18,237 causes of published
+// algorithms on such pairs, all in interval_overlap.   Requires: has_small_integers; the lane is wrong on the pair at
+// all larger scales.
 template <class Real>
 std::optional<Experiment> without_rounding(const BasicPair<Real>& pair, Scalar widest, const Ask<Real>& ask);
 

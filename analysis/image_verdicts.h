@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Verdicts of foreign code, and of changed builds of its source, on images of one pair. Experiments use them.
+// Verdicts of foreign code, and of changed builds of its source, on images of one pair, for experiments.
 #pragma once
 
 #include <fmt/format.h>
@@ -27,8 +27,8 @@ struct Turn {
   std::string text() const { return fmt::format("scaled by 2^{} it is right, by 2^{} wrong", right, wrong); }
 };
 
-// The result of trying scales in range. right: whether the lane is right at the first scale; without a turn, this holds
-// at all scales.
+// The result of trying scales in range. right: whether the lane is right at the first scale; without a turn, the same
+// holds at all scales.
 struct ScaleSearch {
   std::optional<Turn> turn;
   bool right;
@@ -66,7 +66,7 @@ class ImageVerdicts {
   }
 
   // For each pair, whether the block is right. False for pairs that were not tried because too many others timed out.
-  // With until_wrong, no pairs are tried after the call that finds the first wrong verdict.
+  // until_wrong: try no more pairs after the call that finds the first wrong verdict.
   std::vector<bool> asked(const DecideBlock& block, const std::vector<PairOf>& pairs, bool until_wrong = false) const {
     std::vector<bool> right(pairs.size());
     for (std::size_t begin = 0, size; begin < pairs.size() && late_ < kMostLate; begin += size) {
@@ -120,8 +120,8 @@ class ImageVerdicts {
     return scales.has(0) && std::all_of(all.begin(), all.end(), [](const auto& one) { return one.second; });
   }
 
-  // Finds two neighbouring scales in range such that the lane is right at one of them only. Prefers a turn at which the
-  // larger scale is right.
+  // Finds two neighbouring scales in range such that the lane is right at only one of them. Prefers a turn whose larger
+  // scale is right.
   ScaleSearch turn_within(Scales in_range, int most) const {
     auto inside = tried(lane_, in_range, most);
     const std::pair own{0, false};
@@ -138,7 +138,7 @@ class ImageVerdicts {
     return search;
   }
 
-  // Tries some scales from 1 to `last`, and tells whether the block is wrong at all of them.   Requires: last > 0
+  // Tries some scales from 1 to `last`, and returns whether the block is wrong at all of them.   Requires: last > 0
   LargerScales until(const DecideBlock& block, int last) const {
     const auto larger = tried(block, {1, last}, 12);
     return {std::none_of(larger.begin(), larger.end(), [](const auto& one) { return one.second; }),
@@ -173,7 +173,7 @@ class ImageVerdicts {
   const Lane& lane_;
   const PairOf& pair_;
   const Verdict truth_;
-  mutable int asked_ = 0, late_ = 0;  // verdicts asked for; those that timed out
+  mutable int asked_ = 0, late_ = 0;  // numbers of verdicts asked for, and of those that timed out
   mutable std::optional<subjects::ChangedCode> doubles_;
   mutable Turn last_turn_{0, 0};
 };

@@ -17,16 +17,16 @@
 namespace graze::analysis {
 namespace {
 
-constexpr std::uint64_t kBlock = 32;  // pairs, which have some 2,300 images
+constexpr std::uint64_t kBlock = 32;  // pairs; they have about 2,300 images
 
 // Why rounding cannot break the claimed invariants: changing signs, scaling by a power of two, and exchanging the
 // operands of an operation do not change how it rounds.
-//   scale      all sums and comparisons have terms of one degree in the coordinates. This is not so in the thesis's two
-//              algorithms, which add a distance to one that is multiplied by the normal's length.
+//   scale      in every sum and comparison, all terms have the same degree in the coordinates. This is not so in the
+//              thesis's two algorithms, which add a distance to one that is multiplied by the normal's length.
 //   mirror     both sides of a comparison keep their values, or both change sign. This is not so in
 //              guigue_devillers_2003, which chooses its determinants by the triangles' orientation.
 //   translate  coordinates are used only in differences, which do not change.
-//   swap       the axes of both triangles are tried; those of two edges change sign.
+//   swap       the axes of both triangles are tried; the axes of two edges only change sign.
 // No algorithm keeps its verdicts when vertices or axes are reordered, because the rounding of a sum of three terms
 // depends on their order.
 struct Claims {
@@ -41,7 +41,7 @@ const Claims kClaims[] = {
     {"separating_axes", {Invariant::swap, Invariant::mirror, Invariant::scale}},
 };
 
-// The indices in kScales of the scales at which the pair loses no bit: those of its images under `scale`, in order.
+// The indices in kScales of the scales at which the pair loses no bit, in the order of its images under `scale`.
 template <class Real>
 std::vector<std::size_t> used_scales(const BasicPair<Real>& pair) {
   std::vector<std::size_t> places;
@@ -51,7 +51,7 @@ std::vector<std::size_t> used_scales(const BasicPair<Real>& pair) {
   return places;
 }
 
-// The images of one pair under one invariant, as a range of the block's pairs.
+// The range of the block's pairs that are images of one pair under one invariant.
 struct Group {
   Invariant invariant;
   std::size_t pair, first, last;
@@ -280,7 +280,7 @@ bool oracle_intersects(const AnyPair& pair) {
 Invariants invariants(const InvariantSpec& spec) {
   const std::vector<SourceBlock> blocks = blocks_of(spec.sources, kBlock);
   const Run run{spec};
-  // Reports a broken invariant in the first block that has one, whichever thread finds one first.
+  // Reports the broken invariant of the first block that has one, no matter which thread finds one first.
   std::mutex mutex;
   std::size_t first_broken = blocks.size();
   std::string what;

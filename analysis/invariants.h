@@ -36,7 +36,7 @@ inline constexpr InvariantInfo kInvariants[] = {
 };
 inline constexpr std::size_t kInvariantCount = std::size(kInvariants);
 
-// The powers of two of the images of `scale`.
+// The exponents of two by which the images of `scale` are scaled.
 inline constexpr std::array kScales = {1, -1, 4, -4, 16, -16, 64, -64};
 
 // The pair's images, without the pair itself. Images that would lose bits are left out.
@@ -46,9 +46,9 @@ std::vector<BasicPair<Real>> images(Invariant invariant, const BasicPair<Real>& 
 // Whether these verdicts on a pair and its image break the invariant.
 bool breaks(Invariant invariant, Verdict of_pair, Verdict of_image);
 
-// Whether the lane's algorithm claims the invariant: the code is written so that rounding cannot break it. Claims apply
-// to lanes without a policy that round each operation as written. Nothing may overflow or underflow on the pair or its
-// image. invariants.test.cpp checks the claims.
+// Whether the lane's algorithm claims the invariant: it is written so that rounding cannot break the invariant. Claims
+// apply to lanes without a policy that round each operation as written, and only if nothing overflows or underflows on
+// the pair or its image. invariants.test.cpp checks the claims.
 bool claims(const Lane& lane, Invariant invariant);
 
 // Whether InvariantCount::in_range can be computed for the lane.
@@ -63,10 +63,10 @@ struct InvariantBroken : std::runtime_error {
 };
 
 struct InvariantCount {
-  std::uint64_t pairs = 0;    // pairs with an image, without those that the lane's convention leaves open
+  std::uint64_t pairs = 0;    // pairs with an image, except those that the lane's convention excludes
   std::uint64_t changed = 0;  // pairs on which the verdict on some image breaks the invariant
-  // How many of the changed pairs have no overflow or underflow if the lane's source runs without contraction. This
-  // includes the image that breaks the invariant. Known for published lanes without a policy; 0 for others.
+  // How many of the changed pairs, including the image that breaks the invariant, have no overflow or underflow when
+  // the lane's source runs without contraction. Known for published lanes without a policy; 0 for others.
   std::uint64_t in_range = 0;
   InvariantCount& operator+=(const InvariantCount& other);
 };
@@ -80,7 +80,7 @@ struct InvariantCase {
 struct InvariantsOfLane {
   std::array<std::vector<InvariantCount>, kInvariantCount> counts;  // by invariant, then by source
   std::array<std::optional<InvariantCase>, kInvariantCount> simplest;
-  // Over all sources, for each of kScales alone: the pairs with this image, and those whose verdict it changes.
+  // For each of kScales, over all sources: the pairs with this image, and those whose verdict it changes.
   std::array<InvariantCount, kScales.size()> by_scale;
 
   InvariantCount total(Invariant invariant) const;
@@ -91,10 +91,10 @@ bool oracle_intersects(const AnyPair& pair);
 
 struct InvariantSpec {
   std::vector<const Lane*> lanes;
-  std::vector<DecideBlock> on_host;         // for each: the host lane or its twin
+  std::vector<DecideBlock> on_host;         // for each lane: the host lane or its twin
   std::vector<strata::PairSource> sources;  // lanes in float decide pairs of doubles as float32 stores them
   int threads = 0;                          // 0: one on each core
-  // Whether l is simpler than r. The simplest case is kept; among equally simple ones, the first.
+  // Whether l is simpler than r. The simplest case is kept, or the first of equally simple ones.
   std::function<bool(const AnyPair& l, const AnyPair& r)> simpler;
   DecideBlock exact = find_lane("exact/f64/cpu")->decide;              // decides every image
   std::function<bool(const AnyPair&)> intersects = oracle_intersects;  // decides all images of some pairs
@@ -105,11 +105,11 @@ struct Invariants {
   std::vector<InvariantsOfLane> lanes;
   // Pairs and images that the exact decision decides. A pair of doubles and the pair that float32 stores count as two.
   std::uint64_t pairs = 0, images = 0;
-  std::uint64_t by_oracle = 0, its_images = 0;  // those that CGAL and GMP decide too
+  std::uint64_t by_oracle = 0, its_images = 0;  // pairs, and their images, that CGAL and GMP decide too
 };
 
 // Runs every lane on every pair and all its images. The result does not depend on the number of threads.
-// Throws: InvariantBroken for the first pair on which an invariant is broken that must hold.
+// Throws: InvariantBroken for the first pair on which an invariant that must hold is broken.
 Invariants invariants(const InvariantSpec& spec);
 
 }  // namespace graze::analysis

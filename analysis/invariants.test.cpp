@@ -124,7 +124,7 @@ Pair changed(const Pair& pair, float scale, float step) {
   return image;
 }
 
-// Each image occurs once, and the pair itself comes first.
+// Each function returns the pair itself first, and each image once.
 TEST(Invariants, NoWayIsMissingAndNoneIsThereTwice) {
   const Pair pair{{{1, 2, 3}, {2, 0, 1}, {5, 1, 1}}, {{-1, 4, 2}, {0, 1, 6}, {3, 3, -2}}};
   const std::vector<std::pair<std::vector<Pair>, std::size_t>> ways = {{orders(pair), 72},    {mirrored(pair), 8},
@@ -198,7 +198,7 @@ std::vector<std::string> lanes_of(const std::vector<Variant>& variants) {
   return ids;
 }
 
-// Every claim holds on every stratum, and every invariant that is not claimed is broken by some pair.
+// Every claim holds on every stratum, and some pair breaks every invariant that is not claimed.
 TEST(Invariants, ClaimsHoldAndNothingElseDoes) {
   const std::vector<std::string> ids = lanes_of({Variant::cpu, Variant::cuda_nofma});
   const InvariantSpec spec = spec_of(ids, strata::kStrataCount * 150);
@@ -227,7 +227,7 @@ TEST(Invariants, ClaimsHoldOnDoubles) {
     for (std::uint64_t i = 0; i < source.pairs; ++i) stored += is_finite(stored_in_float32(source.double_pair(i)));
   }
   EXPECT_EQ(found.pairs, 2000 + stored);
-  EXPECT_LT(stored, 2000u);  // float32 cannot hold the largest
+  EXPECT_LT(stored, 2000u);  // float32 cannot hold the largest doubles
   EXPECT_GT(found.its_images, 10'000u);
   for (std::size_t l = 0; l < ids.size(); ++l) {
     for (const InvariantInfo& invariant : kInvariants) {
@@ -246,7 +246,7 @@ TEST(Invariants, ClaimsHoldOnDoubles) {
   }
 }
 
-// A plain loop over pairs and images gives the same counts.
+// The counts equal those of a plain loop over pairs and images.
 TEST(Invariants, CountsAreThoseOfAPlainLoop) {
   const InvariantSpec spec =
       spec_of({"moller_1997/f32/cpu", "moller_1997/f64/cpu", "guigue_devillers_2003/f32/cuda-fma"}, 600,
@@ -341,7 +341,7 @@ TEST(Invariants, EachScaleIsCountedAlone) {
   EXPECT_GT(found.lanes[0].total(Invariant::scale).in_range, most);
 }
 
-// If a lane's convention leaves touching pairs open, neither such pairs nor images that touch are counted.
+// Pairs and images that a lane's convention excludes are not counted.
 TEST(Invariants, WhatAConventionLeavesOpenIsNotAsked) {
   InvariantSpec spec = spec_of({"moller_1997/f32/cpu"}, 40, {"shared_vertex", "near_edge_edge"});
   const Invariants all = invariants(spec);
@@ -373,8 +373,8 @@ TEST(Invariants, WhatAConventionLeavesOpenIsNotAsked) {
   EXPECT_EQ(invariants(spec).lanes[0].total(Invariant::part).changed, 1u);
   lane.outside = kOutsideTouching;
   EXPECT_EQ(invariants(spec).lanes[0].total(Invariant::part).changed, 0u);
-  // Pairs that share an area are counted although an ulp can separate them, and so are disjoint pairs. Touching pairs
-  // are not.
+  // Pairs that share an area are counted, although an ulp can separate them. Disjoint pairs are counted too, but
+  // touching pairs are not.
   for (const auto& [x, asked_about] : {std::pair{1.0f, 1u}, {4.0f, 0u}, {9.0f, 1u}}) {
     spec.sources = {{"one", 1, [x](std::uint64_t) {
                        return Pair{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{x, 0, 0}, {x + 4, 0, 0}, {x, 4, 0}}};
@@ -384,7 +384,7 @@ TEST(Invariants, WhatAConventionLeavesOpenIsNotAsked) {
   }
 }
 
-// The steps of foreign code are not known, and a tolerance changes the steps.
+// in_range is not known for foreign code, whose steps are not visible, nor under a tolerance, which changes the steps.
 TEST(Invariants, RangeIsKnownOfPublishedLanesAlone) {
   Lane lane = *find_lane("moller_1997/f32/cpu");
   EXPECT_TRUE(knows_range(lane));
@@ -417,7 +417,7 @@ TEST(Invariants, AreTheSameWhateverTheThreads) {
   }
 }
 
-// The run stops if a verdict of the exact decision or of the oracle depends on the order.
+// The run stops if a verdict of the exact decision or of the oracle breaks an invariant.
 TEST(Invariants, StopWhereTheTruthBreaksOne) {
   InvariantSpec spec = spec_of({"moller_1997/f32/cpu"}, 40, {"shared_vertex"});
   const Pair swapped = images(Invariant::swap, spec.sources[0].pair(3)).front();

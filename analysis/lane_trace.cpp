@@ -32,7 +32,7 @@ Trace<double> run_in(int algorithm, const DoublePair& pair, Contraction rule, co
   return run_traced<Real>(algorithm, pair, lead);
 }
 
-// The evidence that this run of a contracted lane is the lane's own.
+// The evidence that this run of a contracted lane matches the lane's own.
 Evidence evidence(const Lane& lane, const AnyPair& pair, const Trace<double>& run) {
   if (run.verdict != decide_lane(lane, pair)) return Evidence::none;
   if (!cuda::twin_trace(lane)) return Evidence::verdict;

@@ -8,10 +8,10 @@
 
 namespace graze::analysis {
 
-// How well a replay is known to match the lane's own run.
-// source   the lane and the replay are both the algorithm's source without contraction
-// hash     the replay contracts by a rule, and all values passed to the policy have the same hash as the lane's twin
-// verdict  the replay contracts by a rule, and its verdict is the lane's; its values may differ
+// How certain it is that a replay matches the lane's own run.
+// source   lane and replay both run the algorithm's source without contraction
+// hash     the replay contracts by a rule, and the values passed to the policy have the same hash as in the lane's twin
+// verdict  the replay contracts by a rule, and gives the lane's verdict; its values may differ
 // none     no rule reproduces even the verdict
 enum class Evidence { source, hash, verdict, none };
 std::string_view name(Evidence evidence);
@@ -23,7 +23,7 @@ struct Replay {
   Trace<double> run;
 };
 
-// Whether the lane decides what float32 stores of the pair, not the pair itself.
+// Whether the lane decides the pair as float32 stores it, not the pair itself.
 inline bool decides_stored(const Lane& lane, const AnyPair& pair) { return lane.scalar == Scalar::f32 && !pair.floats; }
 
 // The pair that the lane decides.
@@ -51,7 +51,7 @@ Trace<double> run_led(const Lane& lane, const AnyPair& pair, Contraction rule, c
 // none.
 DecideBlock block_of(const Lane& lane);
 
-// Decides the pair on the host; CUDA lanes use the twin.   Throws: std::invalid_argument without either.
+// Decides the pair on the host; CUDA lanes use the twin.   Throws: std::invalid_argument if there is neither.
 Verdict decide_lane(const Lane& lane, const AnyPair& pair);
 
 }  // namespace graze::analysis

@@ -24,7 +24,7 @@ using Triangle = std::array<Vec3<Real>, 3>;
 
 double six_digits(double x) { return std::strtod(fmt::format("{:.6g}", x).c_str(), nullptr); }
 
-// The shortest decimal that is stored as x, as a person would write it.
+// The shortest decimal that is stored as x.
 template <class Real>
 double as_written(double x) {
   const auto stored = static_cast<Real>(x);
@@ -61,15 +61,15 @@ void measure_sizes(const std::vector<Triangle<Real>>& triangles, const std::stri
     const double area2 = length(cross(b - a, c - a));
     if (!(area2 > 1e-9 * longest * longest) && is_degenerate(t)) continue;
     edges.push_back(longest);
-    aspect.push_back(std::clamp(longest * longest / area2, 1.1547005, 1e12));  // a sliver whose area rounds to 0
+    aspect.push_back(std::clamp(longest * longest / area2, 1.1547005, 1e12));  // a sliver's area may round to 0
   }
   if (edges.empty()) throw std::runtime_error(cannot("measure", name, "all triangles are degenerate"));
   scene.edges = quantiles_of(std::move(edges));
   scene.aspect = quantiles_of(std::move(aspect));
 }
 
-// If a coordinate has room for n bits below the grid, it lies on the grid by chance once in 2^n times. The grid is
-// accepted if these n add up to at least kEvidence bits.
+// A coordinate with n bits below the grid's step lies on the grid by chance with probability 2^-n. The grid is accepted
+// if these n sum to at least kEvidence.
 constexpr double kEvidence = 128;
 
 // The distinct absolute values of all coordinates, without 0.
@@ -95,7 +95,7 @@ double ulp_of(Real x) {
 template <class Real>
 std::optional<GridSpec> grid_of(const std::vector<Real>& values) {
   const auto is_evident = [&](double step) {
-    if (static_cast<double>(values.back()) / step > 0x1p48) return false;  // the most that a scene accepts
+    if (static_cast<double>(values.back()) / step > 0x1p48) return false;  // the limit for scenes
     double bits = 0;
     for (const Real x : values) bits += std::max(std::floor(std::log2(step / ulp_of(x))), 0.0);
     return bits >= kEvidence;

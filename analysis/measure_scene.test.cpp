@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests scenes of real triangles. Pairs drawn in a scene resemble its triangles, grids are found only if they exist,
-// and near contacts are near in the scene's own ulps.
+// Tests scenes measured from real triangles. Pairs drawn in a scene resemble its triangles, grids are found only if
+// they exist, and near contacts are near in the scene's own ulps.
 #include "analysis/measure_scene.h"
 
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ TEST(MeasureScene, WhatIsDrawnIsLikeTheMesh) {
     }
   }
   std::vector<double> drawn_edges, drawn_aspects;
-  strata::SceneFile roomy = file;  // the sheet is flat: room above it keeps drawn triangles unflattened
+  strata::SceneFile roomy = file;  // the sheet is flat, and without room above it, drawn triangles would be flattened
   roomy.extent[2] = {1900, 2100};
   const strata::Scene scene = strata::resolved(strata::parse_scene("s", strata::scene_text(roomy)));
   for (std::uint64_t i = 0; i < 20'000; ++i) {
@@ -123,7 +123,7 @@ TEST(MeasureScene, KindsAndMarginsAreThoseOfThePairs) {
   EXPECT_NEAR(file.margins.at(0), 4.0 / 6, 1e-5);  // the neighbours and the coplanar pairs
 }
 
-// A survey in metres, measured to the centimetre, at coordinates at which float32 has steps of half a metre.
+// A survey in metres, measured to the centimetre, with coordinates at which float32 has steps of half a metre.
 TEST(MeasureScene, DoublesAreMeasuredAsTheyAre) {
   const auto at = [](int i, int j) -> Vec3<double> {
     const auto centimetres = [](double x) { return std::round(x * 100) / 100; };
@@ -190,7 +190,7 @@ TEST(MeasureScene, GridsAreFoundWhereTheyAre) {
   EXPECT_EQ(grid_found(3.7, true, 1), (GridSpec{true, 1}));
   EXPECT_EQ(grid_found(3.7, false, -6), (GridSpec{false, -6}));
   EXPECT_EQ(grid_found(37, true, 0), (GridSpec{false, 0}));  // whole numbers
-  EXPECT_EQ(grid_found(3.7, true, 12), std::nullopt);        // finer than float32
+  EXPECT_EQ(grid_found(3.7, true, 12), std::nullopt);        // finer than float32's steps
   EXPECT_EQ(measure_scene(all_pairs_of(sheet(12, 3.7, {1e6, 2e6, 3e6})), "sheet").grid, std::nullopt);
   EXPECT_EQ(measure_scene(all_pairs_of(sheet(1, 1.25, {0, 0, 0})), "two").grid,
             std::nullopt);  // too few numbers as evidence
@@ -256,7 +256,7 @@ TEST(SceneStrata, NearContactsOfDoublesAreNearInTheScenesUlps) {
   }
 }
 
-// Both decisions of the oracle agree in scene strata, and both verdicts occur there, as in other strata.
+// In scene strata, as in others, the oracle's two decisions agree, and both verdicts occur.
 TEST(SceneStrata, BothVerdictsOccurAndTheOraclesDecisionsAgree) {
   const strata::SceneFile file = strata::parse_scene("s",
                                                      "extent = [[1000, 1800], [-540, -500], [3, 900]]\nedges = [0.5, "

@@ -27,7 +27,7 @@ template <class Real>
 std::optional<Real> exact_middle(Real x, Real y) {
   if (const std::optional<Real> sum = exact_sum(x, y))
     return *sum / 2 * 2 == *sum ? std::optional(*sum / 2) : std::nullopt;
-  return x / 2 * 2 == x && y / 2 * 2 == y ? exact_sum(x / 2, y / 2) : std::nullopt;  // the sum may overflow
+  return x / 2 * 2 == x && y / 2 * 2 == y ? exact_sum(x / 2, y / 2) : std::nullopt;  // x + y may overflow
 }
 
 template <class Real>

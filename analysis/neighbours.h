@@ -10,13 +10,13 @@ namespace graze::analysis {
 
 // All images are exact in the coordinate type, so their truth is the pair's own (except for `parts`). The first one is
 // the pair itself.
-// The 72 orders: which triangle is first, and in which order the vertices of each triangle are.
+// The 72 orders of the two triangles and of the vertices within each.
 template <class Real>
 std::vector<BasicPair<Real>> orders(const BasicPair<Real>& pair);
-// The 8 mirror images: each axis is negated or not.
+// The 8 mirror images: every combination of negated axes.
 template <class Real>
 std::vector<BasicPair<Real>> mirrored(const BasicPair<Real>& pair);
-// Scaled by 2^k, for each k from -kMostScaling to kMostScaling at which no coordinate overflows or loses bits.
+// Scales the pair by 2^k, for each k from -kMostScaling to kMostScaling at which no coordinate overflows or loses bits.
 inline constexpr int kMostScaling = 64;
 template <class Real>
 std::vector<BasicPair<Real>> scalings(const BasicPair<Real>& pair);

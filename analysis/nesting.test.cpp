@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares nestings with a computation in rational numbers, and on images of pairs.
+// Compares nestings with a computation in rational numbers, and with those of the pair's images.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,8 @@
 namespace graze::analysis {
 namespace {
 
-// Whether the part of p in q's plane lies in q, in rationals. Its ends are p[i] + d[i] / (d[i] - d[j]) (p[j] - p[i]).
+// Whether the part of p that lies in q's plane lies in q, computed in rationals. The part's ends are p[i] + d[i] /
+// (d[i] - d[j]) (p[j] - p[i]).
 bool reaches_plane_inside(const Vec3<float>* p, const Vec3<float>* q) {
   using Int = std::int64_t;
   struct Point {
@@ -30,7 +31,7 @@ bool reaches_plane_inside(const Vec3<float>* p, const Vec3<float>* q) {
   const auto less = [](Point u, Point v) { return Point{u.x - v.x, u.y - v.y, u.z - v.z}; };
   const auto times = [](Int f, Point v) { return Point{f * v.x, f * v.y, f * v.z}; };
   const Point q0 = point(q[0]), n = cross(less(point(q[1]), q0), less(point(q[2]), q0));
-  const auto inside = [&](Point at, Int weight) {  // at / weight, in q's plane; weight > 0
+  const auto inside = [&](Point at, Int weight) {  // the point at / weight in q's plane; weight > 0
     bool in = true;
     for (int k = 0; k < 3; ++k) {
       const Point from = point(q[k]), to = point(q[(k + 1) % 3]);
@@ -119,8 +120,8 @@ TEST(Nesting, OfDegenerateTriangles) {
   EXPECT_EQ(of({{p, p, p}, {p, p, p}}), Nesting::same);    // the same point
   EXPECT_EQ(of({{p, q, p}, {o, x, y}}), Nesting::a_in_b);
   EXPECT_EQ(of({{o, x, y}, {y, o, x}}), Nesting::same);
-  EXPECT_EQ(of({{o, x, y}, {p, out, under}}), Nesting::none);    // a segment that pierces: not in one plane
-  EXPECT_EQ(of({{o, x, y}, {q, out, under}}), Nesting::b_in_a);  // a triangle that pierces
+  EXPECT_EQ(of({{o, x, y}, {p, out, under}}), Nesting::none);    // a segment that pierces the triangle
+  EXPECT_EQ(of({{o, x, y}, {q, out, under}}), Nesting::b_in_a);  // a triangle that pierces the other inside
   EXPECT_EQ(of({{o, x, y}, {{5, 5, 0}, {6, 5, 0}, {5, 6, 0}}}), Nesting::none);  // disjoint
 }
 

@@ -45,7 +45,7 @@ class OperandCounts {
     result_.verdict += differs;
     for (std::size_t i = 0; i < std::min(rounded_run_.count, fused_run_.count); ++i) {
       const cuda::Comparison &l = rounded_run_.made[i], &r = fused_run_.made[i];
-      if (l.ptx_line != r.ptx_line) return;  // the runs diverged at a test that compares no numbers
+      if (l.ptx_line != r.ptx_line) return;  // the runs diverged at a test that does not compare numbers
       LineApart& line = result_.lines[by_ptx_line_.at(l.ptx_line)];
       count_operands(line, l, r);
       if (l.outcome == r.outcome) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the operands of the comparisons in a user's CUDA source, without contraction and with it, by source line.
-// The twin of the contracted lane runs both ways.
+// Compares the operands of comparisons in a user's CUDA source between runs with and without contraction, by source
+// line. Both runs use the contracted lane's twin.
 #pragma once
 
 #include <array>
@@ -14,15 +14,15 @@
 
 namespace graze::analysis {
 
-// The comparisons of one source line. Two runs are compared up to the first comparison with different outcomes, because
-// later comparisons may have other operands.
+// The comparisons on one source line. Two runs are compared up to the first comparison with different outcomes, because
+// after it they may compare different values.
 struct LineApart {
   cuda::SourceLine at, from;    // as in cuda::ComparisonSite
   std::uint64_t compared = 0;   // comparisons that both runs made
   std::uint64_t differs = 0;    // comparisons with an operand whose bits differ; the sum of the next four
-  std::uint64_t zero_sign = 0;  // only signs of zeros differ
+  std::uint64_t zero_sign = 0;  // comparisons in which only signs of zeros differ
   std::uint64_t not_finite = 0;
-  // The operand that differs by more ulps is lower, or higher, with contraction, by 2^k to 2^(k+1) ulps.
+  // Of the two operands, the one that differs more is lower (or higher) with contraction by 2^k to 2^(k+1) ulps.
   std::array<std::uint64_t, 64> below = {}, above = {};
   std::uint64_t sign = 0;     // the sign of left minus right differs
   std::uint64_t outcome = 0;  // the outcomes differ
@@ -32,10 +32,10 @@ struct LineApart {
 struct OperandsApart {
   std::uint64_t pairs = 0, verdict = 0;  // finite pairs, and those with different verdicts
   std::vector<LineApart> lines;          // in program order
-  std::string why_not;                   // why the runs did not end in order; then there are no counts
+  std::string why_not;                   // why the runs failed; if set, there are no counts
 };
 
-// Whether the lanes are a user's CUDA source without and with contraction, and a twin shows its comparisons.
+// Whether the lanes run the same user's CUDA source, without and with contraction, and a twin shows its comparisons.
 bool shows_operands(const Lane& rounded, const Lane& fused);
 
 // Runs the first `pairs` pairs of each source in a separate process, because the code may crash or hang.

@@ -12,15 +12,15 @@
 
 namespace graze::analysis {
 
-// While it lives, oneTBB uses at most this many threads (0: one for each core).
+// As long as the returned object lives, oneTBB uses at most this many threads (0: one for each core).
 inline tbb::global_control thread_limit(int threads) {
   return tbb::global_control(tbb::global_control::max_allowed_parallelism,
                              static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency()));
 }
 
-// Calls work(task, result) for each task below `tasks`, on this many threads (as thread_limit). Each thread has
-// its own result, which starts as empty(). Results must give the same sum in any order. Returns: the sum of these
-// results, to which add(sum, result) adds each.
+// Calls work(task, result) for each task below `tasks`, on this many threads (as in thread_limit). Each thread has its
+// own result, which starts as empty(). Returns: the sum of the results, made with add(sum, result). The sum must not
+// depend on their order.
 template <class Empty, class Work, class Add>
 auto sum_over_threads(std::size_t tasks, int threads, const Empty& empty, const Work& work, const Add& add) {
   const tbb::global_control limit = thread_limit(threads);

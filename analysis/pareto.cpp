@@ -41,15 +41,15 @@ BasicPair<Real> moved(const BasicPair<Real>& pair, Extreme extreme, int k) {
   return is_finite(result) ? result : pair;
 }
 
-// The processor time of this thread, without the time in which other programs run. Other programs still slow the
-// thread, because they share its cache and its clock.
+// The processor time of this thread. It excludes time in which other programs run, but these still slow the thread,
+// because they share its cache and its clock.
 double processor_nanoseconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
 }
 
-// The nanoseconds that reading the clock adds to a time. They matter if few pairs are timed.
+// The nanoseconds that reading the clock adds to a measured time; they matter if few pairs are timed.
 double nanoseconds_of_the_clock() {
   static const double least = [] {
     double found = HUGE_VAL;
@@ -116,7 +116,7 @@ std::string why_not_timed(const Lane& lane) {
 std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, const strata::PairBlock& pairs,
                                           int passes, Calls calls) {
   std::vector<std::vector<double>> taken(lanes.size());
-  std::vector<bool> failed(lanes.size());  // a lane that failed may take seconds per pair, and is not run again
+  std::vector<bool> failed(lanes.size());  // a failing lane may take seconds per pair, so it is not run again
   for (int pass = 0; pass < passes; ++pass) {
     for (std::size_t l = 0; l < lanes.size(); ++l) {
       const Lane& lane = *lanes[l];

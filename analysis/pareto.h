@@ -18,10 +18,10 @@ struct Cost {
   double low = 0, middle = 0, high = 0;
 };
 
-// How many pairs one call decides: all pairs, or one pair, as in most programs that call such a test.
+// How many pairs each call decides: all pairs, or a single pair as in most programs that use such a test.
 enum class Calls { of_blocks, of_one };
 
-// Nanoseconds per pair of one run of the lane over the pairs, of the type that it takes.   Requires: pairs.
+// Nanoseconds per pair for one run of the lane over the pairs of the type that it takes.   Requires: pairs.
 double nanoseconds_a_pair(const DecideBlock& lane, const strata::PairBlock& pairs, Calls calls = Calls::of_blocks);
 
 // Requires: at least one.
@@ -31,39 +31,38 @@ Cost quartiles(std::vector<double> nanoseconds);
 std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const strata::PairBlock& pairs, int passes,
                            Calls calls = Calls::of_blocks);
 
-// Why the lane's time would not be the time of its code, as for twins and for programs that answer by lines. Empty if
-// the time can be measured.
+// Why timing the lane would not time its code, as for twins and for programs that answer line by line. Empty if it can
+// be timed.
 std::string why_not_timed(const Lane& lane);
 
-// The costs of lanes. The time of a user's code is the processor time of its own process, without communication. In
-// that process each call decides one pair, unless the code takes blocks. A lane that is not timed, or that failed on a
-// pair, has no cost.
+// The costs of lanes. The time of a user's code is its own process's processor time, without communication. There, each
+// call decides one pair, unless the code takes blocks. A lane that is not timed, or that failed on a pair, has no cost.
 std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, const strata::PairBlock& pairs,
                                           int passes, Calls calls = Calls::of_blocks);
 
-// The first pairs of the sources, which take turns; `count` in all. If a source has doubles, all are doubles.
+// The first `count` pairs, taken from the sources in turn. If a source has doubles, all are doubles.
 strata::PairBlock first_pairs(std::span<const strata::PairSource> sources, std::size_t count);
 
 // A lane's errors and costs, to compare with other lanes.
 struct Offer {
   std::string lane;
   PolicyErrors errors;
-  std::optional<Cost>
-      near = std::nullopt,
-      far = std::nullopt;  // near: pairs in a core's cache, or on the device. far: from memory, or with copies
-  bool dominated = false;  // by another lane, compared by `near`
+  std::optional<Cost> near = std::nullopt,
+                      far = std::nullopt;  // near: pairs in a core's cache, or on the device. far: pairs in memory, or
+                                           // copied to the device
+  bool dominated = false;                  // by another lane, compared by `near`
   std::optional<cuda::KernelNeeds> needs = std::nullopt;  // on a device
   std::optional<AnyPair> failure = std::nullopt;          // a small pair on which the lane is wrong
-  std::optional<Cost> alone = std::nullopt;               // on a core, with calls that decide one pair each
+  std::optional<Cost> alone = std::nullopt;               // on a core, if each call decides a single pair
   std::string why_not_timed = {};                         // the reason if there are no costs
 };
 
-// Whether another lane costs no more and errs no more, and costs less or errs less. A declined pair counts as an error,
-// because it has no verdict. Lanes without this cost are ignored.
+// Whether another lane costs no more and errs no more, and either costs less or errs less. A declined pair has no
+// verdict, so it counts as an error. Lanes without this cost are ignored.
 bool is_dominated(const Offer& offer, const std::vector<Offer>& offers, std::optional<Cost> Offer::*by);
 void mark_dominated(std::vector<Offer>& offers);
 
-// The ways of making a source's pairs extreme. The truth is that of the changed pairs.
+// Ways to make a source's pairs extreme. The truth is that of the changed pairs.
 enum class Extreme {
   scale,     // times 2^k, exactly
   offset,    // 2^k times their size away from the origin, along (1, 1, 1)
@@ -93,7 +92,7 @@ struct ExtremeCurve {
 struct Pareto {
   std::string machine;
   bool on_device = false;
-  int threads_at_once = 0;  // of a device's multiprocessor
+  int threads_at_once = 0;  // on a device's multiprocessor
   std::vector<Offer> offers;
   std::vector<ExtremeCurve> curves;
 };

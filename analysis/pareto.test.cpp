@@ -31,7 +31,7 @@ TEST(Pareto, ADifferenceWithinTheSpreadsDominatesNothing) {
   std::vector<Offer> offers = {offer(0, 18), offer(0, 17.9), offer(0, 15)};
   offers[1].near = Cost{17, 17.9, 18.5};
   mark_dominated(offers);
-  EXPECT_TRUE(offers[0].dominated && offers[1].dominated);  // dominated by the third
+  EXPECT_TRUE(offers[0].dominated && offers[1].dominated);  // by the third
   offers.pop_back();
   mark_dominated(offers);
   EXPECT_FALSE(offers[0].dominated || offers[1].dominated);
@@ -101,8 +101,8 @@ TEST(Extremes, FindTheScaleOfAnAbsoluteEpsilon) {
   EXPECT_LT(*of_none->down.worse, -8);
 }
 
-// A range found on some pairs also holds on five times as many fresh pairs. At its ends the lane is as right as at 2^0;
-// where the range shows more errors, fresh pairs have more errors too.
+// A range found on some pairs also holds on five times as many fresh pairs: at its ends the lane is as right as at 2^0.
+// Where the range shows more errors, fresh pairs have more errors too.
 TEST(Extremes, AreTrueOfFreshPairs) {
   const std::vector<std::string> lanes = {"moller_1997/f32/cpu", "interval_overlap/f32/cpu", "separating_axes/f64/cpu"};
   const std::vector<std::string> strata = {"near_edge_edge", "near_vertex_face", "uniform"};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests lanes under policies over the strata. Certified verdicts equal the truth, and explanations of policies are
-// right.
+// Tests lanes under policies over the strata: certified verdicts equal the truth, and explanations that name a policy
+// are right.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -32,7 +32,7 @@ std::vector<Pair> drawn(strata::Stratum stratum, std::uint64_t count) {
 
 class PolicyOverStratum : public testing::TestWithParam<strata::StratumInfo> {};
 
-// Tests 10,000 pairs of each stratum, for every algorithm, scalar and host variant that has the policy.
+// Runs 10,000 pairs of each stratum through every algorithm, scalar and host variant that has the policy.
 TEST_P(PolicyOverStratum, WhatABoundDecidesIsTheTruth) {
   const std::vector<Pair> pairs = drawn(GetParam().stratum, 10'000);
   std::vector<bool> truth;
@@ -58,7 +58,7 @@ TEST_P(PolicyOverStratum, WhatABoundDecidesIsTheTruth) {
   EXPECT_GE(lanes_asked, 16);
   const bool open = GetParam().id.starts_with("coplanar_w") || GetParam().id.starts_with("shared_") ||
                     GetParam().stratum == strata::Stratum::degenerate;
-  EXPECT_TRUE(open || decided > 10'000u) << decided;  // otherwise it would not be a filter
+  EXPECT_TRUE(open || decided > 10'000u) << decided;  // a filter must decide most pairs
 }
 
 // Checks the claim right_without_rounding of an algorithm on proper triangles.
@@ -81,7 +81,7 @@ TEST_P(PolicyOverStratum, AlgorithmsAreRightWithoutRoundingWhereTheySaySo) {
 INSTANTIATE_TEST_SUITE_P(Strata, PolicyOverStratum, testing::ValuesIn(strata::kStrata),
                          [](const auto& row) { return std::string(row.param.id); });
 
-// projected_sat does not make that claim, and this test confirms that it would be false.
+// projected_sat does not claim right_without_rounding. This test confirms that the claim would be false.
 TEST(PolicyLanes, AnAlgorithmThatIsWrongWithoutRoundingIsFound) {
   int wrong = 0;
   for (const Pair& pair : drawn(strata::Stratum::uniform, 300)) {
@@ -122,7 +122,7 @@ TEST(PolicyLanes, AreExplainedByTheLaneWithoutPolicy) {
             "largest coordinate): the policy (without paper it is right).");
 }
 
-// Twins of lanes under tolerances equal the CPU lanes without contraction, and differ from them with it.
+// Under tolerances, twins without contraction equal the CPU lanes, and twins with contraction differ from them.
 TEST(PolicyLanes, TwinsWithoutContractionAreTheCpuLanes) {
   std::uint64_t contracted_apart = 0;
   for (const Lane& zero : published_lanes()) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Powers of two by which a pair can be scaled so that no product of its coordinates leaves a scalar's exponents.
+// Finds the powers of two by which a pair can be scaled so that no product of its coordinates leaves a scalar's
+// exponent range.
 #pragma once
 
 #include <algorithm>
@@ -30,8 +31,8 @@ inline const ScalarLimits& limits_of(Scalar scalar) {
 struct Size {
   static constexpr int kNone = 10'000;  // beyond all exponents
   int low = kNone, high = -kNone;
-  int largest_difference = -kNone, smallest_difference = kNone;  // exponents; vertex differences along one axis
-  int least, most;  // of the coordinate type: the exponents of its least number, and of the first beyond its largest
+  int largest_difference = -kNone, smallest_difference = kNone;  // exponents of vertex differences along one axis
+  int least, most;  // exponents of the coordinate type's least number, and of the first number beyond its largest
 
   template <class Real>
   explicit Size(const BasicPair<Real>& pair)
@@ -77,10 +78,10 @@ inline Scales common(Scales l, Scales r) { return {std::max(l.first, r.first), s
 inline Scales exact_scales(const Size& size) { return {size.least - size.low, size.most - size.high}; }
 
 // The scales at which no product of this many coordinates, and no sum of four such products, can leave the scalar's
-// exponents. Such a product is, however it is rounded, a multiple of 2^(factors * low), or 0.
+// exponents. No matter how it is rounded, such a product is a multiple of 2^(factors * low), or 0.
 inline Scales scales_in_range(const Size& size, Scalar scalar, int factors) {
   const ScalarLimits& limits = limits_of(scalar);
-  // Both divisions round towards the inside of the range.
+  // Both divisions round inwards.
   return common({-(-limits.least / factors) - size.low, limits.most / factors - 2 - size.high}, exact_scales(size));
 }
 

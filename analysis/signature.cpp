@@ -142,7 +142,7 @@ std::optional<Signature> parse_signature(std::string_view key) {
                    *bucket,
                    std::string(*subject),
                    std::move(*wrong_lanes)};
-  if (analysis::key(result) != key) return std::nullopt;  // a number in another notation, or too large
+  if (analysis::key(result) != key) return std::nullopt;  // a number is too large, or not in the notation of keys
   return result;
 }
 

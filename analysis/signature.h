@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signatures: the key under which a subject's failures are grouped. Pairs with one signature fail alike.
+// Signatures group a subject's failures: pairs with the same signature fail in the same way.
 #pragma once
 
 #include <compare>
@@ -22,7 +22,7 @@ namespace graze::analysis {
 // Foreign code also has '!' crashed, '@' timed out and '%' unstable.
 char mark(Verdict lane, Verdict truth);
 
-// A lane whose verdict is not the truth: its mark, and its name within the subject, such as "f32/cpu-fma".
+// A lane whose verdict is not the truth: its name within the subject, such as "f32/cpu-fma", and its mark.
 struct WrongLane {
   std::string lane;
   char mark;

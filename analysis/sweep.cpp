@@ -17,13 +17,13 @@
 namespace graze::analysis {
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // pairs that are drawn and judged, then decided under all policies
+constexpr std::size_t kBlock = 1024;  // pairs that are drawn and judged together
 
 // Verdicts on a block of pairs: a row of words for each policy.
 struct Rows {
   std::size_t words;
   std::vector<std::uint64_t> intersects, declined;
-  std::vector<std::uint64_t> excused;  // pairs on which a user's code differs from the truth by its convention
+  std::vector<std::uint64_t> excused;  // pairs on which a user's code differs by its convention
   std::vector<Counts> foreign;         // counts of these pairs, and of those on which the code failed
   std::vector<bool> is_foreign;
 
@@ -43,7 +43,7 @@ struct Rows {
     return judge(yes(row, word), none(row, word), truth.yes(0, word), count, is_foreign[row]);
   }
 
-  // Classifies the pairs on which a user's code is not right. in_doubles: it decided the pairs as doubles.
+  // Classifies the pairs on which a user's code is not right. in_doubles: whether it decided the pairs as doubles.
   void look_at_foreign(std::size_t row, const LaneDecider& decider, const Rows& truth, const strata::PairBlock& pairs,
                        bool in_doubles) {
     is_foreign[row] = true;
@@ -146,7 +146,7 @@ struct Together {
   Ladders ladders;  // for several policies
   std::vector<Epsilons> rungs;
 
-  // For pairs of doubles, a lane that takes only float32 decides what float32 stores.
+  // A lane that takes only float32 decides pairs of doubles as float32 stores them.
   void decide(const strata::PairBlock& pairs, const Rows& truth, Rows& rows) const {
     const bool in_doubles = pairs.in_doubles() && (ladders ? bool(ladders.doubles) : one.block.decides_doubles());
     std::uint64_t* const intersects = &rows.intersects[first * rows.words];
@@ -160,7 +160,7 @@ struct Together {
   }
 };
 
-// Draws the pairs in blocks, computes the truth of each pair once, and runs every lane under every policy on it. Then
+// Draws the pairs in blocks, computes each pair's truth once, and runs every lane on the pairs under every policy. Then
 // calls add(block, truth, rows, p, results[p]) with the rows of all lanes for each result.
 template <class Result, class Add>
 std::vector<Result> run(const std::vector<std::vector<Together>>& lanes, std::size_t policies,
@@ -211,7 +211,7 @@ std::vector<PolicyErrors> errors_of(const std::vector<Together>& parts, Policies
                 PolicyErrors& errors) { add(block, truth, rows[0], p + 1, errors); });
 }
 
-// Whether the second policy may follow the first on a ladder: no tolerance is smaller.
+// Whether the second policy may follow the first on a ladder: none of its tolerances is smaller.
 bool rises(const Epsilons& first, const Epsilons& second) {
   for (int s = 0; s < kSiteCount; ++s) {
     if (!(first.absolute[s] <= second.absolute[s] && first.relative[s] <= second.relative[s])) return false;
@@ -219,7 +219,8 @@ bool rises(const Epsilons& first, const Epsilons& second) {
   return first.any_relative() == second.any_relative();
 }
 
-// Divides the policies into as few ladders as their order allows. A sweep lists the tolerances of a curve together.
+// Divides the policies into as few ladders as their order allows. (A sweep lists a curve's tolerances one after
+// another.)
 std::vector<Together> parts_of(const Lane& lane, Policies policies) {
   std::vector<Together> parts;
   for (std::size_t p = 0; p < policies.size(); ++p) {

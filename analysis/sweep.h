@@ -25,7 +25,7 @@ struct PairPlace {
 struct PolicyErrors : Counts {
   std::string policy;  // empty: comparison with zero
   std::uint64_t pairs = 0;
-  std::uint64_t fixed = 0, broken = 0;  // pairs that are right only under the policy, and only without it
+  std::uint64_t fixed = 0, broken = 0;  // pairs that are right only with the policy; only without it
   std::optional<PairPlace> first_fixed, first_broken;
 
   double share_not_right() const {
@@ -41,7 +41,7 @@ struct Agreement {
   std::string policy;                         // empty: comparison with zero
   std::uint64_t pairs = 0, intersecting = 0;  // all pairs, and those that intersect
   std::uint64_t differing = 0;                // pairs on which the two verdicts differ
-  std::uint64_t mended = 0, added = 0;        // pairs on which they differ under no policy only, or under this one only
+  std::uint64_t mended = 0, added = 0;        // pairs on which they differ only without a policy; only under this one
   Counts of[2];                               // each lane's errors
   std::optional<PairPlace> first;             // the first pair on which they differ
 
@@ -50,7 +50,7 @@ struct Agreement {
 };
 
 using Sources = std::span<const strata::PairSource>;
-using Policies = std::span<const std::string>;  // an empty one compares with zero
+using Policies = std::span<const std::string>;  // an empty policy compares with zero
 
 // The pairs [first, first + count) of a source.
 struct SourceBlock {
@@ -65,7 +65,7 @@ std::uint64_t pairs_in(Sources sources);  // of all sources
 
 bool any_in_doubles(Sources sources);
 
-// The source with change(pair) in place of each of its pairs, of either type. Only the host can draw it.
+// The source with each of its pairs, of either type, replaced by change(pair). Only the host can draw it.
 template <class Change>
 strata::PairSource changed(strata::PairSource source, const Change& change) {
   const auto drawn = [&](const auto& draw) {
@@ -83,8 +83,8 @@ strata::PairSource changed(strata::PairSource source, const Change& change) {
 // The errors under each policy, on all pairs of the sources.
 using Sweep = std::function<std::vector<PolicyErrors>(Policies policies, Sources sources)>;
 
-// The code that decides under a policy. foreign: the lane of a user's code, whose failures and convention are counted;
-// null for our own lanes.
+// The code that decides under a policy. foreign: a user's lane, so that failures and its convention are counted; null
+// for our own lanes.
 struct LaneDecider {
   DecideBlock block;
   const Lane* foreign;
@@ -95,11 +95,11 @@ inline LaneDecider decider_of(const Lane& lane) { return {lane.decide, lane.fore
 
 using DecideUnder = std::function<LaneDecider(const std::string& policy)>;
 
-// A sweep on the host: pairs are drawn and judged once, then decided under each policy. The result does not depend on
-// the number of threads (0: one on each core).
+// A sweep on the host. Each pair is drawn and judged once, then decided under each policy. The result does not depend
+// on the number of threads (0: one on each core).
 Sweep host_sweep(DecideUnder decide, int threads = 0);
 
-// A sweep of a published lane on the host; CUDA lanes run as twins. Uses core/lanes/ladder.h if it can.
+// A sweep of a published lane on the host; CUDA lanes run as twins. Uses core/lanes/ladder.h where possible.
 // The returned sweep throws UsageError for a policy that the lane cannot have.
 Sweep host_sweep(const Lane& lane, int threads = 0);
 
@@ -124,7 +124,7 @@ NotRightPairs not_right_pairs(const Lane& lane, Policies policies, Sources sourc
 // Like the function above, for any lane.   decide: as for host_sweep.
 NotRightPairs not_right_pairs(const DecideUnder& decide, Policies policies, Sources sources, int threads = 0);
 
-// How two published lanes compare under each policy, on all pairs of the sources.
+// Compares two published lanes under each policy, on all pairs of the sources.
 using AgreementSweep = std::function<std::vector<Agreement>(Policies policies, Sources sources)>;
 
 // Runs on the host; CUDA lanes run as twins. The result does not depend on the number of threads.

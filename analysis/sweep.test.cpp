@@ -55,7 +55,7 @@ TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
     EXPECT_EQ(found[p].first_broken, expected.first_broken) << policies[p];
   }
   EXPECT_TRUE(found[0].changes_nothing());
-  EXPECT_GT(found[1].fixed, 0u);  // relocation: an epsilon fixes some pairs and breaks others
+  EXPECT_GT(found[1].fixed, 0u);  // an epsilon fixes some pairs and breaks others
   EXPECT_GT(found[1].broken, 0u);
   EXPECT_EQ(found[3].wrong(), 0u);
   EXPECT_GT(found[3].declined, 0u);
@@ -68,7 +68,7 @@ TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
   }
 }
 
-// For doubles, CGAL gives the truth, and a lane in float decides the pairs that float32 stores.
+// For doubles, CGAL gives the truth, and lanes in float decide the pairs as float32 stores them.
 TEST(Sweep, CountsPairsOfDoublesByTheirOwnTruth) {
   const auto sources = stratum_sources(3, 400, {"near_vertex_face", "stored"}, PairTypes::f64);
   const std::vector<std::string> policies = {"abs:1e-6", "rel:100", "bound"};
@@ -123,7 +123,7 @@ TEST(Sweep, ListsEachPairOnWhichSomePolicyIsNotRight) {
   }
 }
 
-// One sweep of many tolerances gives the same counts as a sweep for each tolerance. The tolerances are absolute and
+// One sweep over many tolerances gives the same counts as a separate sweep for each. The tolerances are absolute and
 // relative, at all sites and at one site.
 TEST(Sweep, ManyTolerancesAtOnceAreEachAlone) {
   const auto sources = stratum_sources(8, 2 * strata::kStrataCount * 300, {}, PairTypes::both);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blocks of pairs with the verdicts of the truth and of every lane as bits, and tallies of such blocks.
+// Blocks of pairs with the truth and every lane's verdicts as bits, and tallies of such blocks.
 #pragma once
 
 #include <cstdint>
@@ -17,16 +17,16 @@ using Bits = std::vector<std::uint64_t>;
 
 struct JudgedBlock {
   std::size_t count = 0;
-  std::span<const std::uint64_t> truth;    // of each pair: whether it intersects
-  std::span<const Bucket> buckets;         // of each pair's margin
-  std::span<const LaneVerdicts> verdicts;  // of each lane under test
-  // For pairs of doubles: the pairs whose truth differs once float32 stores them, and those that float32 cannot store.
-  // Lanes in float32 decide the stored pairs. For pairs of float32, this is empty.
+  std::span<const std::uint64_t> truth;    // whether each pair intersects
+  std::span<const Bucket> buckets;         // buckets of the pairs' margins
+  std::span<const LaneVerdicts> verdicts;  // verdicts of each lane under test
+  // For pairs of doubles: those whose truth changes when float32 stores them, and those that float32 cannot store.
+  // Lanes in float32 decide the stored pairs. Empty for pairs of float32.
   std::span<const std::uint64_t> changed_by_storing = {};
 };
 
 struct LaneCounts : Counts {
-  std::uint64_t differs_from_cpu = 0;  // another verdict than the cpu lane of the same algorithm and scalar
+  std::uint64_t differs_from_cpu = 0;  // verdicts other than those of the cpu lane of the same algorithm and scalar
   std::uint64_t stored = 0;  // wrong verdicts that are right on the stored pair, or whose pair float32 cannot store
 
   bool any() const { return *this != LaneCounts{}; }
@@ -39,8 +39,8 @@ struct LaneCounts : Counts {
   friend bool operator==(const LaneCounts&, const LaneCounts&) = default;
 };
 
-// Counts of pairs and of each lane's errors, by margin bucket. Tallies can be added in any order.
-// Another small integer of a pair (core/margin/axis.h) can take the bucket's place.
+// Counts of pairs and of each lane's errors, by margin bucket. Tallies can be added in any order. Instead of the
+// bucket, another small integer that belongs to a pair can be used (core/margin/axis.h).
 class Tally {
  public:
   // cpu_twin[l]: the index of the cpu lane with the algorithm and scalar of lane l; -1 for none.
@@ -50,8 +50,8 @@ class Tally {
   void add(const Tally& other);
   void add(Bucket b, std::uint64_t pairs, std::uint64_t intersects);
   void add(Bucket b, int lane, const LaneCounts& counts);
-  // Moves one pair from the count of that verdict to the count by convention, because the lane's convention excludes
-  // it.   stored: it was counted as stored too.
+  // Moves one pair from the count of that verdict to the count by convention.   stored: whether the pair was counted as
+  // stored too.
   void excuse(Bucket b, int lane, Verdict verdict, bool stored = false);
 
   int lane_count() const { return static_cast<int>(cpu_twin_.size()); }

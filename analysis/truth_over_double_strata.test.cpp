@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Over the strata of doubles, the oracle's two decisions and the exact decision must always agree. The exact decision
-// decides single pairs and blocks.
+// is tested on single pairs and on blocks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 20261127;
 
-// The number of pairs of each stratum. GRAZE_PAIRS sets another number: 3,600,000 makes 10^8 pairs in all.
+// The number of pairs of each stratum. GRAZE_PAIRS overrides it; 3,600,000 makes 10^8 pairs in all.
 std::uint64_t pairs_wanted() {
   const char* text = std::getenv("GRAZE_PAIRS");
   return text ? std::stoull(text) : 100'000;
@@ -73,7 +73,7 @@ TEST_P(EveryDoubleStratum, TheMarginsSignIsTheOracles) {
 INSTANTIATE_TEST_SUITE_P(Strata, EveryDoubleStratum, testing::ValuesIn(strata::kDoubleStrata),
                          [](const auto& row) { return std::string(row.param.id); });
 
-// A pair of float32 in doubles is the same pair.
+// A pair of float32 that is stored as doubles has the same truth.
 TEST(Doubles, OfFloat32HaveItsTruth) {
   for (const strata::StratumInfo& row : strata::kStrata) {
     for (std::uint64_t index = 0; index < 1'000; ++index) {
@@ -89,7 +89,7 @@ TEST(Doubles, OfFloat32HaveItsTruth) {
   }
 }
 
-// This pair is from a user. Once float32 stores it, both triangles are in one plane.
+// A user reported this pair. Stored as float32, both triangles lie in one plane.
 TEST(Doubles, ParallelTrianglesAHundredthApartAtAMillionAreDisjoint) {
   const DoublePair pair{{{1000000.01, 0, 0}, {1000000.01, 1, 0}, {1000000.01, 0, 1}},
                         {{1000000.02, 0, 0}, {1000000.02, 1, 0}, {1000000.02, 0, 1}}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests the oracle and the lanes over the strata. Two exact decisions must always agree, and subjects must fail where
-// they are known to fail.
+// Tests the oracle and the lanes over the strata. The two exact decisions must always agree, and subjects must fail
+// where they are known to fail.
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
 
@@ -46,7 +46,7 @@ TEST_P(EveryStratum, TheOraclesTwoDecisionsAgree) {
     intersecting += intersects;
   }
   EXPECT_GT(intersecting, 0u);
-  // Neighbours in a mesh always share a point; in all other strata both verdicts must occur.
+  // Neighbours in a mesh always share a point. In all other strata, both verdicts must occur.
   const bool shared =
       GetParam().stratum == strata::Stratum::shared_vertex || GetParam().stratum == strata::Stratum::shared_edge;
   EXPECT_EQ(intersecting == 100'000u, shared);
@@ -57,7 +57,7 @@ struct Decided {
   std::vector<std::uint64_t> intersects, declined;  // a bit for each pair
 };
 
-// Decides with the exact decision, several pairs side by side.
+// Runs the exact decision on a block of pairs.
 Decided drawn_and_decided(std::uint64_t seed, strata::Stratum stratum, std::size_t count) {
   const std::vector<std::uint64_t> none((count + 63) / 64);
   Decided all{std::vector<Pair>(count), none, none};
@@ -87,8 +87,8 @@ TEST_P(EveryStratum, TheExactLaneAgreesWithTheOracle) {
   }
 }
 
-// Counts, for 20,000 pairs of each stratum: pairs that the shortcuts in single and in double precision decide, and
-// distances that are proven in integers.
+// For 20,000 pairs of each stratum: how many the shortcuts decide in single and in double precision, and how many
+// distances are proven in integers.
 constexpr std::array<int, 3> kDecided[strata::kStrataCount] = {
     {20000, 20000, 0},   {19934, 19942, 9},  {19963, 19999, 0},  {19999, 19999, 0},    {11842, 19999, 0},
     {6504, 16511, 775},  {5584, 5590, 855},  {0, 6310, 0},       {0, 9936, 0},         {6985, 16380, 1},
@@ -97,7 +97,7 @@ constexpr std::array<int, 3> kDecided[strata::kStrataCount] = {
     {4408, 10484, 749},
 };
 
-// The engine's shortcuts to a bucket are quick bounds in two precisions, and the proof of a distance in integers.
+// The engine's shortcuts to a bucket are quick bounds in two precisions, and a proof of the distance in integers.
 TEST_P(EveryStratum, ShortcutsToTheBucketAreRightWhereTheyDecide) {
   int by_single = 0, by_double = 0, proven = 0, undecided = 0, left = 0;
   for (std::uint64_t index = 0; index < 20'000; ++index) {
@@ -133,21 +133,21 @@ TEST_P(EveryStratum, ShortcutsToTheBucketAreRightWhereTheyDecide) {
       GetParam().stratum == strata::Stratum::shared_vertex || GetParam().stratum == strata::Stratum::shared_edge;
   EXPECT_TRUE(touching || by_double > 3'000) << by_double;
   EXPECT_TRUE(!GetParam().id.starts_with("near_") || by_single > 5'000) << by_single;
-  // The counts are the same on every host, because nothing contracts. Smaller counts mean a worse, slower estimate,
-  // which only this test shows.
+  // Nothing contracts, so the counts are the same on every host. Smaller counts mean worse estimates and slower code;
+  // no other test would show that.
   EXPECT_EQ((std::array{by_single, by_double, proven}), kDecided[static_cast<int>(GetParam().stratum)]);
   const bool mixed = GetParam().stratum == strata::Stratum::mixed_scale;
   EXPECT_TRUE(mixed ? undecided > 1'000 : undecided < 20) << undecided;
   EXPECT_LT(left, mixed ? 150 : 1) << left;
 }
 
-// Counts how many of 100,003 pairs of each stratum the vector code leaves undecided.
+// How many of 100,003 pairs of each stratum the vector code leaves undecided.
 constexpr std::size_t kOpen[strata::kStrataCount] = {
     0, 91, 1, 1, 1, 3830, 4121, 1, 0, 94, 14811, 1640, 7856, 183, 116, 988, 917, 28142, 7605, 2978, 4572,
 };
 
-// Runs every instruction set of this processor. Instruction sets without fused multiply-adds decide no pairs; all
-// others decide the same pairs.
+// Runs the code for every instruction set of this processor. Without fused multiply-adds it decides no pairs; with
+// them, all instruction sets decide the same pairs.
 TEST_P(EveryStratum, BucketsSideBySideAreRightWhereTheyAreSettled) {
   constexpr std::size_t kPairs = 100'003;
   const auto [pairs, truth, declined] = drawn_and_decided(kSeed + 3, GetParam().stratum, kPairs);
@@ -178,7 +178,7 @@ TEST_P(EveryStratum, BucketsSideBySideAreRightWhereTheyAreSettled) {
   EXPECT_EQ(fewest, least);
 }
 
-// A block gives each pair the same verdict as a call with only that pair, even if the block's code works on several
+// A block gives each pair the same verdict as a call with that pair alone, even if the block's code works on several
 // pairs at once.
 TEST_P(EveryStratum, BlocksOfHostLanesAreDecidedAsEachPairAlone) {
   constexpr std::size_t kPairs = 20'003;
@@ -194,7 +194,7 @@ TEST_P(EveryStratum, BlocksOfHostLanesAreDecidedAsEachPairAlone) {
   }
 }
 
-// Compares the margin's certified bucket, including its sign, with the exact margin.
+// Compares the certified bucket, including its sign, with the exact margin.
 TEST_P(EveryStratum, BucketsHoldTheExactMargin) {
   for (std::uint64_t index = 0; index < 400; ++index) {
     const Pair pair = strata::generate(kSeed, GetParam().stratum, index);
@@ -203,7 +203,7 @@ TEST_P(EveryStratum, BucketsHoldTheExactMargin) {
     ASSERT_EQ(bucket > 0, t.verdict == Verdict::disjoint) << index;
     ASSERT_EQ(bucket == 0, t.margin == 0 && t.verdict == Verdict::intersects) << index;
     if (bucket != 0 && t.margin_ulps != 0 && std::isfinite(t.margin_ulps)) {
-      // The rounded margin may be on a bucket's border; then the bucket may be the one below.
+      // If the rounded margin is on the border of two buckets, the bucket may be the lower one.
       const int log2_ulps = std::ilogb(t.margin_ulps);
       EXPECT_TRUE(bucket == make_bucket(bucket > 0 ? 1 : -1, log2_ulps) ||
                   std::abs(t.margin_ulps) == std::ldexp(1.0, log2_ulps))
@@ -229,8 +229,8 @@ TEST(Lanes, FailInEveryHardStratum) {
   }
 }
 
-// On {-1,0,1} algorithms that neither divide nor take roots do not round. So each error is an error of logic, and no
-// error occurs on proper triangles.
+// On coordinates in {-1,0,1}, algorithms that neither divide nor take roots do not round. So every error is a logic
+// error, and no error occurs on proper triangles.
 TEST(Lanes, OnTheLatticeDivisionFreeAlgorithmsFailOnDegeneratePairsOnly) {
   std::uint64_t proper = 0, wrong_on_degenerate = 0;
   for (std::uint64_t index = 0; index < 200'000; ++index) {
@@ -262,7 +262,7 @@ TEST(Lanes, WideExactContactsDefeatDoublePrecision) {
   }
 }
 
-// Canaries: if contraction has no effect, the fused lanes have become the strict ones (see GRAZE_FP).
+// If this canary finds no effect of contraction, the fused lanes were compiled like the strict ones (see GRAZE_FP).
 TEST(Canary, EveryHostVariantShowsInEveryAlgorithmAndScalar) {
   for (const Lane& fused : lanes()) {
     if (fused.exact || fused.variant == Variant::cpu || fused.is_cuda() || !runs_on_this_cpu(fused)) continue;

@@ -11,7 +11,7 @@
 namespace graze::analysis {
 namespace {
 
-constexpr double kOutward = 0x1p-40;  // more than the relative error of the library's quantiles
+constexpr double kOutward = 0x1p-40;  // exceeds the relative error of the library's quantiles
 constexpr std::uint64_t kPairsForScale = 100'000;
 
 const PolicyErrors& best_of(const Curve& curve, Forbid forbid, double max_rate) {
@@ -54,7 +54,7 @@ class Tuner {
   PolicyRank rank(const PolicyErrors& errors) const { return analysis::rank(errors, spec_.forbid, spec_.max_rate); }
 
   void choose() {
-    const PolicyErrors* best = &result_.zero;  // of equal policies, that of the earlier curve is kept
+    const PolicyErrors* best = &result_.zero;  // a tie keeps the policy of the earlier curve
     for (const Curve& curve : result_.curves) {
       for (const PolicyErrors& point : curve.points) {
         if (rank(point) < rank(*best)) best = &point;

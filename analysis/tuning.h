@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses an epsilon. Compares a lane's errors under many policies on the same pairs and finds the best policy. Also
-// reports problems with epsilons that an error count alone does not show.
+// Chooses an epsilon: compares a lane's errors under many policies on the same pairs and finds the best policy. Also
+// reports problems with epsilons that error counts alone do not show.
 #pragma once
 
 #include <compare>
@@ -17,20 +17,20 @@ namespace graze::analysis {
 // The pairs times 2^k; pairs that cannot be scaled exactly do not change.
 std::vector<strata::PairSource> scaled(Sources sources, int k);
 
-// Upper 95 % confidence bound of the rate of `count` in `of` cases: at this rate, a count this low has a chance of 5 %.
-// Rounded outward. Reference: Clopper and Pearson 1934, one-sided.
+// Upper 95 % confidence bound on the rate if `count` of `of` cases are seen: at this rate, the probability of so low a
+// count is 5 %. Rounded outward.   Reference: Clopper and Pearson 1934, one-sided.
 double upper_bound(std::uint64_t count, std::uint64_t of);
 
-// The lower bound: at this rate, a count this high has a chance of 5 %. Rounded outward.
+// Lower bound: at this rate, the probability of so high a count is 5 %. Rounded outward.
 double lower_bound(std::uint64_t count, std::uint64_t of);
 
 // The kind of error whose rate is limited.
 enum class Forbid { false_negative, false_positive, any };
 std::uint64_t forbidden(const PolicyErrors& errors, Forbid forbid);
 
-// The rank of a policy: the better policy has the smaller one. First, the rate of forbidden errors must be low
-// enough; then the number of other errors decides, then the number of forbidden ones. If the rate is too high,
-// forbidden errors come before the others.
+// A policy's rank; better policies have smaller ranks. A low enough rate of forbidden errors comes first, then the
+// number of other errors, then the number of forbidden ones. If the rate is too high, forbidden errors are compared
+// before others.
 struct PolicyRank {
   bool too_many;
   std::uint64_t first, second;
@@ -45,24 +45,24 @@ struct TuneSpec {
   std::vector<strata::PairSource> sources;  // pairs used to choose
   std::vector<strata::PairSource> others;   // pairs to verify the choice on
   Forbid forbid = Forbid::any;
-  double max_rate = 1e-6, max_other = 0.1;  // of forbidden errors, and of other errors
+  double max_rate = 1e-6, max_other = 0.1;  // limits on the rates of forbidden errors and of other errors
 };
 
 using Curve = CurveOf<PolicyErrors>;
 
-// How far pairs may grow or shrink before the errors under a policy double, or its forbidden errors alone. 0: they do
-// not double within kMostScale. Measured on pairs that were not used to choose the policy.
+// How far pairs may grow or shrink before a policy's errors, or only its forbidden errors, double. 0: they do not
+// double within kMostScale. Measured on pairs that were not used to choose the policy.
 struct ScaleBreak {
   int up = 0, down = 0;  // exponents of two
   PolicyErrors here, at_up, at_down;
 };
-// Whether the rate of errors more than doubled, proved by bounds of both rates at 95 % confidence.
+// Whether the rate of errors more than doubled, as bounds on both rates prove at 95 % confidence.
 inline bool doubles(std::uint64_t before, std::uint64_t after, std::uint64_t pairs) {
   return share_of(after, pairs).low > 2 * share_of(before, pairs).high;
 }
 inline constexpr int kMostScale = 32;
 
-// Errors with the chosen tolerance at each of two sites alone, and at both together.
+// Errors with the chosen tolerance at each of two sites separately, and at both together.
 struct Interaction {
   std::string first, second;
   PolicyErrors of_first, of_second, together;
@@ -72,12 +72,12 @@ enum class TuneResult {
   satisfied,        // the upper bounds of both rates are at most max_rate and max_other
   too_few_pairs,    // few enough errors, but on too few pairs to prove it
   not_confirmed,    // few enough forbidden errors on the pairs used to choose, but too many on the other pairs
-  not_satisfiable,  // every policy has too many forbidden errors on the pairs of the choice; the chosen has fewest
+  not_satisfiable,  // every policy has too many forbidden errors on the pairs used to choose; the chosen one has fewest
   not_useful        // few enough forbidden errors, but a higher rate of other errors than max_other
 };
 
 struct Tuned {
-  PolicyErrors zero;  // on the pairs of the choice
+  PolicyErrors zero;  // on the pairs used to choose
   std::vector<Curve> curves;
   std::string chosen;  // policy; empty: compare with zero exactly
   TuneResult result = TuneResult::not_satisfiable;
@@ -88,7 +88,7 @@ struct Tuned {
   std::vector<Interaction> interactions;
 };
 
-// The upper bound of the rate of errors that are not forbidden; 0 if all are.
+// The upper bound on the rate of errors that are not forbidden; 0 if all errors are forbidden.
 double other_bound(const PolicyErrors& errors, Forbid forbid);
 
 // Judges the choice by its errors on the pairs used to choose and on the other pairs.
@@ -99,8 +99,8 @@ TuneResult result_of(const PolicyErrors& chosen_on, const PolicyErrors& confirme
 std::vector<const PolicyErrors*> best_of_curves(const std::vector<Curve>& curves, Forbid forbid, double max_rate);
 
 // Chooses a policy on some pairs and verifies it on others. Among the policies whose forbidden rate is low enough, it
-// takes the one with the fewest other errors. Ties prefer no tolerance, then relative tolerances at all sites, then
-// absolute ones at all sites, then single sites, and then the smallest tolerance.
+// takes the one with the fewest other errors. Ties go to no tolerance, then to relative tolerances at all sites,
+// absolute ones at all sites, single sites, and finally the smallest tolerance.
 // Requires: pairs in both lists.
 Tuned tune(const TuneSpec& spec);
 

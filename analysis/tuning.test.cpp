@@ -27,7 +27,7 @@ TEST(UpperBound, IsClopperAndPearsons) {
   EXPECT_EQ(upper_bound(5, 5), 1);
 }
 
-// At the bound, at most `count` cases have a chance of at most 5 %. The reference value has 50 digits.
+// At the bound, the probability of at most `count` cases is at most 5 %. The reference value has 50 digits.
 TEST(UpperBound, IsRoundedOutward) {
   using Precise = boost::multiprecision::cpp_bin_float_50;
   std::mt19937_64 random(11);
@@ -42,7 +42,7 @@ TEST(UpperBound, IsRoundedOutward) {
   }
 }
 
-// At the lower bound, at least `count` cases have a chance of at most 5 %. This test mirrors that of the upper bound.
+// At the lower bound, the probability of at least `count` cases is at most 5 %. Mirrors the test of the upper bound.
 TEST(LowerBound, IsRoundedOutward) {
   using Precise = boost::multiprecision::cpp_bin_float_50;
   EXPECT_EQ(lower_bound(0, 100), 0);
@@ -85,8 +85,8 @@ TEST(Tune, BothRatesNeedABound) {
     return result_of(chosen_on, confirmed, Forbid::false_negative, 1e-3, 0.1);
   };
   EXPECT_EQ(result(with(0, 9, 100), with(0, 200, 2995)), TuneResult::satisfied);
-  EXPECT_EQ(result(with(0, 9, 100), with(0, 200, 2994)), TuneResult::too_few_pairs);  // of the forbidden errors
-  EXPECT_EQ(result(with(0, 9, 100), with(0, 299, 2995)), TuneResult::too_few_pairs);  // of the others
+  EXPECT_EQ(result(with(0, 9, 100), with(0, 200, 2994)), TuneResult::too_few_pairs);  // to bound the forbidden errors
+  EXPECT_EQ(result(with(0, 9, 100), with(0, 299, 2995)), TuneResult::too_few_pairs);  // to bound the others
   EXPECT_EQ(result(with(0, 40, 100), with(0, 1198, 2995)), TuneResult::not_useful);   // 40 %
   EXPECT_EQ(result(with(0, 9, 100), with(4, 200, 2995)), TuneResult::not_confirmed);
   EXPECT_EQ(result(with(1, 9, 100), with(4, 1198, 2995)), TuneResult::not_satisfiable);
@@ -107,10 +107,10 @@ TEST(Tune, ChoosesForWhatIsForbidden) {
   EXPECT_EQ(no_negative.result, TuneResult::satisfied) << no_negative.chosen << " " << no_negative.bound;
   EXPECT_GT(no_negative.zero_confirmed.false_negative, 100u);
   EXPECT_LE(no_negative.bound, 1e-3);
-  EXPECT_LT(no_negative.confirmed.false_positive, 20'000u * 3 / 4);  // not every pair is a false positive
+  EXPECT_LT(no_negative.confirmed.false_positive, 20'000u * 3 / 4);  // the policy does not simply answer intersects
   spec.forbid = Forbid::false_positive;
   const Tuned no_positive = tune(spec);
-  EXPECT_EQ(no_positive.result, TuneResult::not_satisfiable);  // a tolerance removes no false positives
+  EXPECT_EQ(no_positive.result, TuneResult::not_satisfiable);  // no tolerance removes false positives
   spec.forbid = Forbid::any;
   spec.max_rate = 1e-6;
   const Tuned neither = tune(spec);  // no epsilon can satisfy this limit
@@ -119,7 +119,7 @@ TEST(Tune, ChoosesForWhatIsForbidden) {
   EXPECT_EQ(tune(spec).chosen, neither.chosen);
 }
 
-// The claims about the chosen policy hold on the curves: if none is good enough, none has fewer forbidden errors.
+// The claim about the chosen policy holds on the curves: if no policy is good enough, none has fewer forbidden errors.
 TEST(Tune, NoPolicyIsGoodEnoughOnlyWhereNoneOfTheCurvesIs) {
   std::set<TuneResult> results;
   for (const std::uint64_t pairs : {300u, 3000u}) {
@@ -169,7 +169,7 @@ TEST(Tune, SaysWhenPairsAreTooFew) {
   EXPECT_NEAR(tuned.bound, 1.5e-3, 1e-4);
 }
 
-// A site whose tolerance has no effect is called dead. A site that decides is not.
+// A site whose tolerance has no effect is reported as dead; a site that decides is not.
 TEST(Tune, FindsDeadKnobs) {
   TuneSpec spec;
   const auto real = [](const std::string& policy) {
@@ -186,8 +186,8 @@ TEST(Tune, FindsDeadKnobs) {
   EXPECT_EQ(tune(spec).dead, std::vector<std::string>{"orientation"});
 }
 
-// This code is exact, except that it says "intersects" on all pairs whose coordinates are all smaller than 1/1000.
-// misses: it also says that pairs with a first coordinate above 0 do not intersect.
+// This code is exact, except that it answers "intersects" for all pairs whose coordinates are all smaller than 1/1000.
+// misses: it also answers "disjoint" for pairs whose first coordinate is above 0.
 Stranger wrong_when_small(bool misses) {
   return Stranger([misses](const Pair& pair) {
     float largest = 0;
@@ -198,7 +198,7 @@ Stranger wrong_when_small(bool misses) {
   });
 }
 
-// Only the false positives double: the other errors are too many for the sum to double.
+// Only the false positives double. The other errors are so many that the sum does not.
 TEST(Tune, FindsWhereTheForbiddenErrorsDouble) {
   TuneSpec spec;
   Stranger small = wrong_when_small(true);

@@ -16,7 +16,7 @@
 namespace graze::analysis {
 namespace {
 
-// Judges blocks of pairs of one coordinate type: the truth and the lanes.
+// Computes the cells of the truth and of the lanes for blocks of pairs of one coordinate type.
 template <class Real>
 class Panels {
  public:
@@ -33,7 +33,7 @@ class Panels {
 
   const std::vector<const Lane*>& lanes() const { return lanes_; }  // the first lane gives the truth
 
-  // Foreign code that fails on this many pairs gets no panel, because each failure takes a new process or the full time
+  // Foreign code that fails on too many pairs gets no panel, because each failure takes a new process or the full time
   // limit.
   bool given_up(std::size_t panel) const { return failed_[panel] >= kMostFailures; }
 
@@ -53,7 +53,7 @@ class Panels {
   }
 
  private:
-  static constexpr int kMostFailures = 3000, kOfALate = 1000;  // three time-outs are enough
+  static constexpr int kMostFailures = 3000, kOfALate = 1000;  // a time-out counts as 1000, so three are enough
 
   static Cell cell_of(Verdict said, Cell truth) {
     if (truth == Cell::not_finite) return truth;
@@ -151,7 +151,7 @@ namespace {
 
 template <class Real>
 MovedCoordinates liveliest_of(const BasicPair<Real>& pair, std::span<const Lane* const> lanes) {
-  // Columns and rows at the distances 2^k from the middle, on both sides.
+  // Columns and rows at distances of 2^k from the middle, on both sides.
   std::vector<int> places{kMapCentre};
   for (int away = 1; away < kMapCentre; away *= 2) {
     places.insert(places.begin(), kMapCentre - away);

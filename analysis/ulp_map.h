@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ulp maps: the verdicts around a pair when two of its coordinates move by single ulps. The maps follow the pictures in
+// Ulp maps: the verdicts around a pair as two of its coordinates move by single ulps. The maps follow the pictures in
 // Kettner, Mehlhorn, Pion, Schirra and Yap 2008, "Classroom examples of robustness problems in geometric computations".
 #pragma once
 
@@ -59,16 +59,16 @@ struct UlpMap {
   std::vector<UlpPanel> panels;  // the truth, then the lanes
 };
 
-// Returns the pair of a cell. x rises by an ulp from column to column, and y falls by an ulp from row to row, through
-// zero and the subnormals. At the limits of the coordinate type the pair is not finite.
+// Returns the pair of a cell. x rises by one ulp per column, and y falls by one ulp per row, through zero and the
+// subnormals. At the limits of the coordinate type the pair is not finite.
 template <class Real>
 BasicPair<Real> pair_at(const BasicPair<Real>& pair, MovedCoordinates moved, int column, int row);
 
-// Chooses the two coordinates of one vertex along which verdicts change most. The function samples some cells, near and
-// far, and counts those that differ from the cell before, in the truth and in each lane. It compares the smaller count
-// of the two directions first, then the sum, then the order of the coordinates. An ulp is one of the pair's coordinate
-// type. Around zero an ulp is the least number, and a move by it shows little. So a zero moves only if no other choice
-// changes verdicts in both directions. Requires: finite coordinates; lanes that run here or have a twin.
+// Chooses the two coordinates of one vertex along which verdicts change most. Samples cells near and far, and counts
+// those that differ from the cell before, in the truth and in each lane. Compares the smaller count of the two
+// directions first, then the sum, then the order of the coordinates. Around zero an ulp is the least number of the
+// coordinate type, and moving by it shows little. So a zero moves only if no other choice changes verdicts in both
+// directions. Requires: finite coordinates; lanes that run here or have a twin.
 MovedCoordinates liveliest_coordinates(const AnyPair& pair, std::span<const Lane* const> lanes);
 
 // CUDA lanes run as twins. Exact lanes are left out, because their verdict is the truth. Foreign code is left out if it

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares a map with one known by hand, and maps of all kinds of pairs with a decision of each cell's pair.
+// Compares one map with the known answer, and maps of all kinds of pairs with separate decisions of each cell's pair.
 #include "analysis/ulp_map.h"
 
 #include <gtest/gtest.h>
@@ -122,13 +122,13 @@ TEST(UlpMap, FailuresOfForeignCodeHaveCellsOfTheirOwn) {
 
 TEST(UlpMap, CoordinatesAreTheFirstThatChangeVerdictsMost) {
   Pair pair = kOnTheDiagonal;
-  EXPECT_EQ(liveliest_coordinates(pair, {}), (MovedCoordinates{3, 4}));  // the end of a's edge that is not at zero
+  EXPECT_EQ(liveliest_coordinates(pair, {}), (MovedCoordinates{3, 4}));  // the end of a's edge away from the origin
   std::swap(pair.a[1], pair.a[2]);
   EXPECT_EQ(liveliest_coordinates(pair, {}), (MovedCoordinates{6, 7}));
   pair = kOnTheDiagonal;
   std::swap(pair.a, pair.b);
   EXPECT_EQ(liveliest_coordinates(pair, {}), (MovedCoordinates{0, 1}));
-  // Two vertices meet at zero, and moving another vertex cannot change that.
+  // Two vertices meet at the origin, and moving another vertex cannot change that.
   pair = {{{0.5f, 0.5f, 1}, {0, 0, 0}, {-0.5f, 0.5f, 1}}, {{1, 0, 0}, {1, -1, 0}, {0, 0, 0}}};
   EXPECT_EQ(liveliest_coordinates(pair, {}).x / 3, 1);
 }

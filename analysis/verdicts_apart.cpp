@@ -16,7 +16,7 @@ std::vector<VerdictsApart> verdicts_apart(const TwoDeciders& deciders, const std
   const auto pair_at = [&](const PairPlace& place) {
     return sources[static_cast<std::size_t>(place.source)].any_pair(place.index);
   };
-  // Equally simple pairs are ordered by their places, so that the simplest does not depend on the threads.
+  // Orders equally simple pairs by their places, so that the result does not depend on the threads.
   const auto keep_simplest = [&](std::optional<PairPlace>& kept, const PairPlace& found) {
     if (!kept) {
       kept = found;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares only the verdicts of two lanes: for code whose values are not recorded.
+// Compares only the verdicts of two lanes, for code whose values are not recorded.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ struct VerdictsApart {
   std::uint64_t differs = 0;             // pairs on which the two verdicts differ
   Counts of[2];                          // each lane's errors
   std::optional<PairPlace> simplest;     // the simplest pair on which they differ
-  std::uint64_t broken = 0, mended = 0;  // differing pairs on which only the first lane is right; only the second
+  std::uint64_t broken = 0, mended = 0;  // differing pairs on which only the first (second) lane is right
   std::optional<PairPlace> simplest_broken, simplest_mended;
 
   bool operator==(const VerdictsApart&) const = default;
@@ -38,8 +38,8 @@ struct TwoDeciders {
   DecideBlock decide[2];
 };
 
-// counts[source]. The exact decision gives the truth; for doubles, a lane in float decides what float32 stores. The
-// result does not depend on the number of threads.   simpler: orders pairs.
+// counts[source]. The exact decision gives the truth. Lanes in float decide pairs of doubles as float32 stores them.
+// The result does not depend on the number of threads.   simpler: whether the first pair is simpler.
 std::vector<VerdictsApart> verdicts_apart(const TwoDeciders& deciders, const std::vector<strata::PairSource>& sources,
                                           int threads,
                                           const std::function<bool(const AnyPair&, const AnyPair&)>& simpler);

@@ -29,20 +29,20 @@ TEST(Canaries, AreJudgedByTheirBits) {
       {"order f32 3f800000 0 0", "as written"},
       {"order f32 0 0 3f800000", "regrouped"},
       {"order_in_loop f32 426c0000", "regrouped"},   // 59
-      {"order_in_loop f32 427c0000", "other bits"},  // 63, which no order gives
+      {"order_in_loop f32 427c0000", "other bits"},  // 63; no order gives this sum
       {"nearest f64 3ff0000000000000 3ff0000000000002 3ff0000000000000", "rounded twice"},
       {"reciprocal f32 3f800000 3f7fffff 3f800000 3f800000", "times 1/d"},
       {"division f64 0 4000", "as written"},
       {"division f64 7 4000", "7 of 16384 wrong"},
-      {"division f64 0 3fff", "other bits"},                                 // fewer divisions than the canary has
+      {"division f64 0 3fff", "other bits"},                                 // too few divisions
       {"identities f32 7fc00000 ffc00000 7fc00001 ffffffff", "as written"},  // NaNs of any sign and payload
       {"identities f32 3f800000 ffc00000 0 7fc00000", "simplified"},
-      {"identities f32 1007fc00000 7fc00000 7fc00000 7fc00000", "other bits"},  // more bits than a float has
+      {"identities f32 1007fc00000 7fc00000 7fc00000 7fc00000", "other bits"},  // too many bits for a float
       {"subnormal_result f32 400000 0", "flushed to 0"},
       {"zeros f32 80000000 0 0 0", "signs ignored"},
       {"nan f32 1 0 0 0", "NaN ignored"},
       {"sum f32 30800000", "regrouped"},          // 2^-30
-      {"subnormal_nearest f64 2", "other bits"},  // rounded twice, but no other canary shows excess digits
+      {"subnormal_nearest f64 2", "other bits"},  // looks like double rounding, but no other canary shows excess digits
       {"infinity f32 7f7fffff ff800000 1 1", "other bits"},
   };
   for (const auto& [line, found] : kLines) {
@@ -53,7 +53,7 @@ TEST(Canaries, AreJudgedByTheirBits) {
   }
 }
 
-// Neither fused operations nor wide registers round a product. Only wide registers keep a wider range.
+// Fused operations and wide registers both leave a product unrounded, but only wide registers have a wider range.
 TEST(Canaries, TellAFusedProductFromExcessPrecision) {
   EXPECT_EQ(result_in("range f32 7f800000\nstatements f32 b1800000", "statements", "f32").found, "fused");
   const CanaryResult wide = result_in("range f32 71800000\nstatements f32 b1800000", "statements", "f32");
@@ -83,13 +83,13 @@ TEST(Canaries, OfThisCompilerRoundAsWrittenWithoutContraction) {
   const std::string output = run_canaries("c++ -O2 -ffp-contract=off", "");
   for (const CanaryResult& result : judge_canaries(output)) EXPECT_EQ(result.found, "as written") << result.name;
   EXPECT_EQ(measured_rounding(judge_canaries(output)), Rounding::rounded);
-  // The output of a program that was stopped gives no wrong answer, unless a number is cut.
+  // The output of a program that was stopped early gives no wrong answer, unless it ends within a number.
   for (std::size_t length = 0; length + 2 < output.size(); length += 7)
     EXPECT_EQ(measured_rounding(judge_canaries(output.substr(0, output.rfind('\n', length) + 1))), std::nullopt);
 }
 
-// The canary of reciprocals computes x (1 / x). If 1 / x is rounded to m / 2^k, the canary computes x m / 2^k. Below 1,
-// the distance of neighbouring numbers is 32 / 2^k.
+// The canary of reciprocals computes x (1 / x). If 1 / x is rounded to m / 2^k, the canary computes x m / 2^k. Just
+// below 1, neighbouring numbers are 32 / 2^k apart.
 TEST(Canaries, ReciprocalsOf41And49RoundSoThatTheirProductIsNot1) {
   for (const auto& [x, k] : {std::pair<std::uint64_t, int>{41, 29}, {49, 58}}) {
     const std::uint64_t one = std::uint64_t{1} << k, m = (one + x / 2) / x;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages between graze, a subject's supervisor, and the worker in which foreign code runs. All data from the worker
-// may be forged. So the supervisor copies each message or word once, and checks the copy.
+// Messages between graze, a subject's supervisor, and the worker in which foreign code runs. The worker may forge
+// anything it sends. So the supervisor copies each message or word once, and checks the copy.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@ namespace graze::subjects {
 
 inline constexpr std::size_t kMostAsked = 1024;  // pairs in a block
 
-// The answer for a pair. A worker may only send kDeclined, kDisjoint and kIntersects. Only the supervisor gives other
-// answers.
+// The answer for a pair. A worker may send only kDeclined, kDisjoint and kIntersects. Only the supervisor gives the
+// other answers.
 enum Answer : signed char {
   kDeclined = -1,
   kDisjoint = 0,
@@ -41,7 +41,7 @@ struct Answers {
 // A message from the supervisor to the worker: the pairs to ask in a forward pass, and those to ask in a backward pass.
 struct Question {
   std::uint64_t nonce;
-  std::int32_t worker;   // process id of the worker to which the question is sent, and which may end before it reads it
+  std::int32_t worker;   // process id of the worker that is asked, which may end before it reads the question
   std::uint32_t count;   // pairs in the block
   std::uint32_t singly;  // ask one pair at a time, even if the subject takes blocks
   Chosen first, second;
@@ -64,11 +64,11 @@ struct Loaded {
   std::uint32_t describes_itself;  // has a struct graze_subject
   char version[256], source[512], convention[512];
   char symbol[512];  // the library's symbol that was loaded
-  char text[8192];   // of a program: the first line of its answer to `describe`
+  char text[8192];   // the first line of a program's answer to `describe`
 };
 
-// The word of an answer in shared memory: the pair, the pass, the answer, and a check value that depends on the
-// question's nonce.
+// An answer's word in shared memory: the pair, the pass, the answer, and a check value that depends on the question's
+// nonce.
 inline std::uint64_t word_of(std::uint64_t nonce, bool second, std::size_t pair, signed char answer) {
   const std::uint64_t content = pair << 3 | std::uint64_t{second} << 2 | static_cast<std::uint64_t>(answer + 2);
   std::uint64_t check = (nonce ^ content) * 0x9e3779b97f4a7c15;  // finaliser of SplitMix64
@@ -80,7 +80,7 @@ static_assert(kMostAsked << 3 <= 1 << 16);
 
 inline constexpr std::size_t kWords = 2 * kMostAsked;  // for both passes
 
-// Called in the worker: writes an answer to the place where the supervisor reads it.
+// Called in the worker: writes an answer where the supervisor reads it.
 inline void put_answer(std::uint64_t* words, const Question& question, bool second, std::size_t pair,
                        signed char answer) {
   __atomic_store_n(&words[(second ? kMostAsked : 0) + pair], word_of(question.nonce, second, pair, answer),
@@ -89,7 +89,7 @@ inline void put_answer(std::uint64_t* words, const Question& question, bool seco
 
 inline constexpr std::size_t kPairsBytes = kMostAsked * 18 * sizeof(double);
 
-// The descriptors of the supervisor, and then those of the worker.
+// The supervisor's descriptors, then the worker's.
 inline constexpr int kControlFd = 3, kSupervisorPairsFd = 4, kSupervisorCodeFd = 5;
 inline constexpr int kPairsFd = 3, kWordsFd = 4, kTalkFd = 5, kCodeFd = 6;  // a command has no kCodeFd
 

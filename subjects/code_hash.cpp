@@ -23,8 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Splits the command into words as a shell does, without expanding variables and patterns. Files to which the command
-// writes (> FILE) go into `written` instead.
+// Splits the command into words as a shell does, without expanding variables or patterns. Files that the command writes
+// to (> FILE) go into `written` instead.
 std::vector<std::string> words_of(const std::string& command, std::set<std::string>& written) {
   std::vector<std::string> words;
   std::string word;
@@ -55,7 +55,7 @@ std::vector<std::string> words_of(const std::string& command, std::set<std::stri
   return words;
 }
 
-// The parts of the text between these characters.
+// The parts of the text that these characters separate.
 std::set<std::string> parts_of(const std::string& text, std::string_view ends) {
   std::set<std::string> parts;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -122,7 +122,7 @@ void expect_unchanged(const std::vector<HashedFile>& files) {
 namespace {
 
 // Describes the code that a command's hash does not cover. The hash covers the command's own code if the command is a
-// program, alone or with a file as its first argument, and the shell changes no folder, name or program.
+// program, by itself or with a file as its first argument, and if the shell changes no folder, name or program.
 std::string not_covered_of(const std::string& command, std::vector<std::string> words, const fs::path& program) {
   if (program.empty() || command.find_first_of(";|&<>()$`*?[~{}!#\n") != command.npos ||
       command.find("PATH=") != command.npos)
@@ -151,7 +151,7 @@ CodeHash hash_of_command(const std::string& command) {
     code.hash = add_number(code.files.back().hash, code.hash);
   };
   if (!program.empty() && words[0].find('/') == words[0].npos) add(program, words[0]);
-  // Finds files that are named within words too: sh -c "exec python3 s.py", SCRIPT=./s.py.
+  // Also finds files that are named within words: sh -c "exec python3 s.py", SCRIPT=./s.py.
   std::set<std::string> files = parts_of(command, " \t\n;|&<>()'\"`=:,{}[]$\\");
   for (const std::string& file : written) files.erase(file);
   files.insert(all.begin(), all.end());
@@ -170,8 +170,7 @@ bool starts_with_any(std::string_view text, std::initializer_list<std::string_vi
                      [&](std::string_view beginning) { return text.starts_with(beginning); });
 }
 
-// Whether the file is a relocatable object or an archive. Unlike linker scripts,
-// these name no other files.
+// Whether the file is a relocatable object or an archive, which, unlike linker scripts, name no other files.
 bool is_object(const fs::path& file) {
   std::string bytes = beginning_of(file, 18);
   bytes.resize(18);
@@ -180,7 +179,7 @@ bool is_object(const fs::path& file) {
                                             bytes[16] + bytes[17] == 1);  // ET_REL
 }
 
-// Whether the hash covers the flag's effect: the flag adds no file that the preprocessor's output does not show.
+// Whether the hash covers the flag's effect: every file that the flag adds shows in the preprocessor's output.
 bool is_covered(const std::string& flag) {
   const std::size_t equals = flag.find('=');
   const std::string value = equals == flag.npos ? "" : flag.substr(equals + 1);
@@ -202,10 +201,10 @@ bool is_covered(const std::string& flag) {
 CodeHash hash_of_flags(const std::vector<std::string>& flags, std::uint64_t hash) {
   CodeHash code{hash, ""};
   std::set<std::string> uncovered;
-  bool takes_next = false;  // the next word is the value of the last flag, for the preprocessor
+  bool takes_next = false;  // whether the next word is the value of the last flag, for the preprocessor
   for (const std::string& flag : flags) {
     code.hash = fnv1a(flag + '\n', code.hash);
-    // A part of a word may be a file name too: -Wl,FILE, -Wl,--script=FILE, @FILE.
+    // A part of a word may also be a file name: -Wl,FILE, -Wl,--script=FILE, @FILE.
     std::set<std::string> files = parts_of(flag, ",=@");
     files.insert(flag);
     for (const std::string& file : files) {

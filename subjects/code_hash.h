@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hash of a subject's code. The hash covers the bytes that are compiled or run, and no file names.
+// A hash of a subject's code. It covers the bytes that are compiled or run, but no file names.
 #pragma once
 
 #include <array>
@@ -14,12 +14,11 @@
 
 namespace graze::subjects {
 
-// The device, inode, size and times of a file. A write or a replacement changes these
-// numbers. Zeros without a file.
+// The device, inode, size and times of a file, which change when the file is written or replaced. Zeros without a file.
 using FileState = std::array<std::int64_t, 7>;
 FileState state_of(const std::filesystem::path& file);
 
-// Whether this is a regular file; false if the system does not answer.
+// Whether this is a regular file; false if the system cannot tell.
 bool is_file(const std::filesystem::path& file);
 
 // A file that was read for a hash.
@@ -27,25 +26,25 @@ struct HashedFile {
   std::filesystem::path file;
   std::uint64_t hash;
   FileState state;           // before the file was read
-  std::string program = {};  // the name by which the PATH finds the file; empty if the command gives a path
+  std::string program = {};  // the name that the PATH resolves to the file; empty if the command gives a path
 };
 
 struct CodeHash {
   std::uint64_t hash = 0;
-  std::string not_covered;             // the further inputs of the code, in words; empty if there are none
+  std::string not_covered;             // inputs of the code that the hash does not cover, in words; may be empty
   std::vector<HashedFile> files = {};  // of a command
 };
 
-// Checks that the files have the content that was hashed. A file that was changed and changed back counts as unchanged.
-// Throws: std::runtime_error that names the file if its content has changed, or if the PATH finds another file.
+// Checks that the files still have the hashed content. A file that was changed and changed back counts as unchanged.
+// Throws: std::runtime_error that names a file whose content has changed, or in whose place the PATH finds another.
 void expect_unchanged(const std::vector<HashedFile>& files);
 
 // Returns: the file's bytes.   Throws: std::runtime_error if there is no such file or it is larger than 1 GiB; Stopped.
 std::string code_in(const std::filesystem::path& file);
 std::uint64_t hash_of_file(const std::filesystem::path& file);
 
-// Hash of the command's text, the program that it starts, and the files that it names literally. Omits files that the
-// shell writes to (> FILE). Does not expand variables and patterns.
+// Hash of the command's text, of the program that it starts, and of the files that it names literally. Omits files that
+// the shell writes to (> FILE). Does not expand variables or patterns.
 CodeHash hash_of_command(const std::string& command);
 
 // Continues the hash with a compiler's flags and the files that they name. `not_covered` describes other files that the
@@ -55,8 +54,8 @@ CodeHash hash_of_flags(const std::vector<std::string>& flags, std::uint64_t hash
 // A build of a source, in a variant or by a toolchain.
 struct Built {
   std::filesystem::path file;                 // its name is the hash of the inputs of the build
-  std::string not_covered;                    // the inputs that the hash leaves out, in words
-  std::shared_ptr<const SealedCopy> content;  // of the file, as it was built or verified
+  std::string not_covered;                    // inputs that the hash does not cover, in words
+  std::shared_ptr<const SealedCopy> content;  // the file's bytes as built or verified
   std::string compiler = {};                  // the first line of its --version
 };
 

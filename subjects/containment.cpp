@@ -46,7 +46,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// In a new user namespace, keeps the user's and the group's ids, with all privileges in that namespace.
+// In a new user namespace, keeps the user's and the group's ids, with all privileges inside that namespace.
 bool map_user(uid_t user, gid_t group) {
   const auto write_to = [](const char* file, const std::string& text) {
     const int fd = open(file, O_WRONLY | O_CLOEXEC);
@@ -64,8 +64,8 @@ bool has_terminals() {
   return statfs("/dev/pts", &at) == 0 && at.f_type == DEVPTS_SUPER_MAGIC;
 }
 
-// Makes the mounts below this place invisible in other namespaces.   Returns: false if the place is no mount point,
-// as "/" in a chroot.
+// Makes the mounts below this place invisible in other namespaces.   Returns: false if the place is not a mount point,
+// like "/" in a chroot.
 bool keep_private(const char* place) { return mount("none", place, nullptr, MS_REC | MS_PRIVATE, nullptr) == 0; }
 
 // In the new namespace: hides later mounts from outside. In a chroot, only "/" is not a mount point.
@@ -123,8 +123,8 @@ std::vector<std::string> mount_points(const std::string& type_begins) {
   return found;
 }
 
-// In the new namespace: hides the control groups. By control groups, root, or a user who owns some of
-// them, could freeze the supervisor, or take its memory and processor.
+// In the new namespace: hides the control groups. Root, or a user who owns some of them, could use them to freeze the
+// supervisor, or to take its memory and processor.
 bool hide_control_groups() {
   for (const std::string& place : mount_points("cgroup")) {  // this finds cgroup2 too
     // A mount on top of a shared mount, as in a chroot, would be visible outside.
@@ -147,8 +147,8 @@ bool make_mount_read_only(const char* place, unsigned long more_flags = 0) {
   return mount("none", place, nullptr, flags, nullptr) == 0;
 }
 
-// Whether the device stores nothing, or computes. Other devices are terminals, or create devices or memory
-// that outlive the namespace.
+// Whether the device stores nothing or only computes. Other devices are terminals, or create devices or memory that
+// outlive the namespace.
 bool is_harmless(const fs::path& device) {
   const std::string name = device.filename(), folder = device.parent_path();
   constexpr const char* kNames[] = {"null", "zero", "full", "random", "urandom", "kfd", "dxg"};
@@ -156,11 +156,11 @@ bool is_harmless(const fs::path& device) {
          std::find(std::begin(kNames), std::end(kNames), name) != std::end(kNames);
 }
 
-// In the new namespace: makes sure that only harmless devices can be opened. Mounts each harmless device over itself,
-// and then makes /dev a read-only mount without devices. Files in /dev would be memory that no limit counts.
+// In the new namespace: lets the code open only harmless devices. Mounts each harmless device over itself, then makes
+// /dev a read-only mount without devices. It is read-only because files in /dev would be memory that no limit counts.
 void limit_devices() {
   const std::vector<std::string> places = mount_points("");
-  // On a shared mount, as in a chroot, the mounts would be visible outside.
+  // On a shared mount, as in a chroot, these mounts would be visible outside.
   if (std::find(places.begin(), places.end(), "/dev") == places.end() ||
       mount("none", "/dev", nullptr, MS_PRIVATE, nullptr) != 0)
     return;
@@ -198,16 +198,16 @@ void make_read_only(const std::string& given) {
   const std::string folder = fs::canonical(given, none), here = fs::current_path(none);
   const char* at = folder.c_str();
   if (folder.empty() || !keep_private("/")) return;
-  // Folders on which something is mounted can be neither renamed nor removed.
+  // A folder with a mount on it can be neither renamed nor removed.
   for (std::size_t end = folder.find('/', 1); end != folder.npos; end = folder.find('/', end + 1)) {
     const std::string above = folder.substr(0, end);
     mount(above.c_str(), above.c_str(), nullptr, MS_BIND | MS_REC, nullptr);
   }
   if (mount(at, at, nullptr, MS_BIND, nullptr) == 0) make_mount_read_only(at);
-  fs::current_path(here, none);  // enters the same folder through the new mounts
+  fs::current_path(here, none);  // enters the same folder again, through the new mounts
 }
 
-// In the new namespace: mounts a new /proc, which shows the namespace's processes.
+// In the new namespace: mounts a new /proc, which shows only the namespace's processes.
 bool mount_proc() {
   return mount("proc", "/proc", "proc", MS_NOSUID | MS_NODEV | MS_NOEXEC, nullptr) == 0 &&
          fs::exists("/proc/thread-self/children");
@@ -229,15 +229,15 @@ bool limit_shared_memory(std::uint64_t bytes) {
          errno == ENOENT;
 }
 
-// The most tasks, threads included. This limit stops code that could exhaust the machine between two checks.
+// The most tasks, threads included. This limit stops code that would exhaust the machine between two checks.
 constexpr int kMostTasks = 1024;
-// The limit is lower without a process namespace, where each task is found and killed separately. Meanwhile the other
-// tasks compete for the processors.
+// The limit is lower without a process namespace, where tasks are found and killed one by one while the others compete
+// for the processors.
 constexpr int kMostTasksWithoutNamespace = 256;
 
 // Limits the tasks in the new namespace. Since Linux 6.14 a process namespace has its own pid_max; before, pid_max
-// applied to the whole machine. Root has no other task limit. Other users have RLIMIT_NPROC, which counts the
-// tasks in a user namespace.
+// applied to the whole machine. For root there is no other task limit. For other users, RLIMIT_NPROC counts the tasks
+// in a user namespace.
 void limit_tasks() {
   utsname system{};
   int major = 0, minor = 0;
@@ -248,7 +248,7 @@ void limit_tasks() {
   if (geteuid() != 0) setrlimit(RLIMIT_NPROC, &most);
 }
 
-// The number of tasks that the user has now.
+// The user's current number of tasks.
 rlim_t tasks_of(uid_t user) {
   rlim_t tasks = 0;
   std::error_code error;
@@ -262,10 +262,10 @@ rlim_t tasks_of(uid_t user) {
   return tasks;
 }
 
-// The guardian: waits until the supervisor ends, or kills it. Foreign code cannot reach the guardian, but may delay
-// the supervisor's waits.
+// The guardian waits until the supervisor ends, or kills it. Foreign code cannot reach the guardian, but may delay the
+// supervisor's waits.
 [[noreturn]] void guard(pid_t supervisor, int control) {
-  constexpr int kMostMilliseconds = 6000;  // until the supervisor must have ended
+  constexpr int kMostMilliseconds = 6000;  // the time in which the supervisor must end
   const int process = open_process(supervisor);
   for (int fd = 0; fd < 1024; ++fd) {
     if (fd != control && fd != process) close(fd);
@@ -274,7 +274,7 @@ rlim_t tasks_of(uid_t user) {
   while (process >= 0 && poll(news, 2, -1) < 0 && errno == EINTR) {
   }
   if (process >= 0 && !news[1].revents) poll(news + 1, 1, kMostMilliseconds);
-  if (process >= 0) kill(supervisor, SIGKILL);  // the id stays the supervisor's until waitpid
+  if (process >= 0) kill(supervisor, SIGKILL);  // until waitpid, no other process can get this id
   while (waitpid(supervisor, nullptr, 0) < 0 && errno == EINTR) {
   }
   _exit(0);
@@ -300,7 +300,7 @@ bool enter_containment(bool namespaces, std::uint64_t shared_bytes, int control,
       limit_devices();
       const bool limited = limit_system_v(shared_bytes);
       limit_tasks();
-      limit_settings();  // last, because the limits are settings too
+      limit_settings();  // last, because the calls above change settings
       close(answer[1]);
       return limited;
     }
@@ -330,14 +330,14 @@ bool is_descendant(pid_t process) {
 
 namespace {
 
-// Kills all descendants except the child `except` and its descendants.   Returns: whether any of the killed processes
-// was still running.
+// Kills all descendants except the child `except` and its descendants.   Returns: whether any of them was still
+// running.
 bool kill_descendants(pid_t except, void (*tell_alive)()) {
   bool found = false;
   std::set<pid_t> known{getpid()};  // parents are listed before their children
   for (const pid_t process : descendants(~std::uint64_t{0}, except)) {
-    tell_alive();  // this loop is slow if each of these processes gets as much processor time as this one
-    const int fd = open_process(process);  // first, so that no other process gets the id during the checks
+    tell_alive();                          // this loop is slow if all these processes compete with it for the processor
+    const int fd = open_process(process);  // opened first, so that no other process gets the id during the checks
     const ProcessStatus status = process_status(process);
     if (fd >= 0 && known.contains(status.parent)) {
       known.insert(process);
@@ -352,23 +352,23 @@ bool kill_descendants(pid_t except, void (*tell_alive)()) {
 
 bool end_children(pid_t except, void (*tell_alive)()) {
   const bool in_namespace = getpid() == 1;
-  // Counts rounds of a millisecond, not time, because the other processes may leave this one little processor time.
-  // Without a namespace there are more rounds: a process that is left over would never end.
+  // Counts rounds of a millisecond instead of time, because the other processes may leave this one little processor
+  // time. Without a namespace there are more rounds, because a process that is left over would never end.
   for (int rounds = in_namespace ? 4'000 : 40'000; rounds > 0; --rounds) {
     tell_alive();
-    if (except < 0 && in_namespace) kill(-1, SIGKILL);  // all processes at once, even new ones
+    if (except < 0 && in_namespace) kill(-1, SIGKILL);  // kills all processes at once, even new ones
     bool left = false;
     for (const pid_t child : own_children()) {
       if (child == except) continue;
       left = true;
       // The child's id stays valid until waitpid, which only this process can call. If the child leads a process group,
-      // the group ends at once.
+      // this ends the whole group.
       kill(-child, SIGKILL);
       kill(child, SIGKILL);
     }
     if (!left) return true;
-    // An ended process counts towards the task limit until it is collected. So no process is collected while any still
-    // runs, and soon the code cannot start more.
+    // A process that has ended counts towards the task limit until it is reaped. So nothing is reaped while any process
+    // still runs; soon the code cannot start more.
     const bool running = kill_descendants(except, tell_alive);
     poll(nullptr, 0, 1);
     if (running) continue;
@@ -381,13 +381,13 @@ bool end_children(pid_t except, void (*tell_alive)()) {
 
 namespace {
 
-// The numbers of system calls in one processor mode. A filter sees only numbers and arguments, not memory, so it cannot
-// check calls with arguments in memory.
+// The numbers of system calls in one processor mode. A filter sees only call numbers and register arguments, so it
+// cannot check calls whose arguments are in memory.
 struct Calls {
   std::uint32_t prlimit, clone, clone3, prctl, setsockopt, socketcall;
-  // memfd_create, memfd_secret and io_uring_setup allocate memory that no limit counts. With vmsplice, a page of 4 KiB
-  // in a pipe may keep 2 MiB allocated. bpf and perf_event_open reach other processes. unshare and setns enter
-  // namespaces. add_key, request_key and keyctl make keys that outlive the code.
+  // memfd_create, memfd_secret and io_uring_setup allocate memory that no limit counts. With vmsplice, a 4 KiB page in
+  // a pipe may keep 2 MiB allocated. bpf and perf_event_open reach other processes. unshare and setns enter namespaces.
+  // add_key, request_key and keyctl make keys that outlive the code.
   std::array<std::uint32_t, 11> forbidden;
   std::vector<std::uint32_t> system_v;  // calls that make System V objects
 };
@@ -407,7 +407,7 @@ void append_rules(std::vector<sock_filter>& steps, const Calls& calls, bool syst
   }
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.prlimit, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 1, 0), refuse, allow});
-  // A thread with descriptors of its own could hide them: /proc shows only those of the first thread.
+  // A thread with its own descriptors could hide them, because /proc shows only the first thread's.
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.clone, 0, 6), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
        BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, kNamespaces, 2, 0),
        BPF_STMT(BPF_ALU | BPF_AND | BPF_K, CLONE_THREAD | CLONE_FILES),
@@ -415,10 +415,10 @@ void append_rules(std::vector<sock_filter>& steps, const Calls& calls, bool syst
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kCloseRange, 0, 4),
        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument + 2 * sizeof(std::uint64_t)),
        BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, kUnshareFiles, 0, 1), refuse, allow});
-  // Huge pages must stay off: a part of a huge page in a socket's buffer would keep the whole page allocated.
+  // Huge pages must stay off, because part of a huge page in a socket's buffer would keep the whole page allocated.
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.prctl, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, PR_SET_THP_DISABLE, 0, 1), refuse, allow});
-  // The system bounds the buffer of a socket only by its own limit, which may be many MiB.
+  // The system's own limit for a socket's buffer may be many MiB.
   add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.setsockopt, 0, 7),
        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument + sizeof(std::uint64_t)),
        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SOL_SOCKET, 0, 4),
@@ -434,12 +434,12 @@ void append_rules(std::vector<sock_filter>& steps, const Calls& calls, bool syst
 
 }  // namespace
 
-// The code must not make a user namespace. In a user namespace, code could mount file systems in memory, which no limit
-// counts, and control groups.
+// The code must not make a user namespace. There, it could mount control groups, and file systems in memory, which no
+// limit counts.
 void forbid_calls(bool system_v) {
   constexpr std::uint32_t kMemfdSecret = 447;  // older headers lack SYS_memfd_secret
   std::vector<sock_filter> i386, steps{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, arch))};
-  // The last four numbers are those of ipc, which makes all three kinds of objects, semget, shmget and msgget.
+  // The last four numbers are those of ipc (which makes all three kinds of objects), semget, shmget and msgget.
   append_rules(
       i386,
       {340, 120, 435, 172, 366, 102, {356, 447, 425, 316, 357, 336, 310, 346, 286, 287, 288}, {117, 393, 395, 399}},

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kScalars[] = {"f32", "f64"};
 
-// The processor for which the compiler compiles, as -dumpmachine reports it; empty if it reports none.
+// The compiler's target processor, as -dumpmachine reports it; empty if it reports none.
 std::string target_of(const std::string& compiler) {
   const Scratch scratch(cache_folder());
   int status = 0;
@@ -25,7 +25,7 @@ std::string target_of(const std::string& compiler) {
   return status == 0 ? said.substr(0, said.find('\n')) : "";
 }
 
-// Whether the compiler has written its own language in place of assembly, as with -flto.
+// Whether the compiler has written its intermediate language instead of assembly, as with -flto.
 bool is_for_link_time(const std::string& assembly) {
   return assembly.find(".gnu.lto_") != assembly.npos || assembly.starts_with("; ModuleID");
 }

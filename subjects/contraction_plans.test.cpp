@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares the contraction plans of the built-in toolchains and of the cpu-fma lanes with the goldens in
-// toolchains/plans.json, by compiler. A compiler that fuses other products changes verdicts, and no other test would
-// show the reason.
+// toolchains/plans.json, by compiler. If a compiler fuses other products, verdicts change, and no other test would show
+// the reason.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -26,8 +26,8 @@ using Json = nlohmann::ordered_json;
 
 const fs::path kGoldens = fs::path(GRAZE_SOURCE_DIR) / "subjects/toolchains/plans.json";
 
-// "GCC 12.2.0" or "clang 14.0.6", from the first line of the compiler's --version. Empty for other compilers, and if
-// the headers of the standard library are missing.
+// "GCC 12.2.0" or "clang 14.0.6", from the first line of the compiler's --version. Empty for other compilers, or if the
+// standard library's headers are missing.
 std::string version_of(const std::string& compiler) {
   const Scratch scratch(cache_folder());
   int status = 0;
@@ -35,7 +35,7 @@ std::string version_of(const std::string& compiler) {
   const std::string line = said.substr(0, said.find('\n'));
   std::smatch found;
   if (status != 0 || !std::regex_search(line, found, std::regex("[0-9]+\\.[0-9]+\\.[0-9]+"))) return "";
-  // clang compiles for every processor, but may lack the headers for a processor.
+  // clang can compile for every processor, but may lack a processor's headers.
   shell_output("printf '#include <tuple>' | " + compiler + " -x c++ -fsyntax-only -", scratch.path(), status);
   return status != 0 ? "" : (line.find("clang") != line.npos ? "clang " : "GCC ") + found.str();
 }
@@ -100,7 +100,7 @@ TEST_F(ContractionPlans, OfBuiltInToolchainsAreTheGoldens) {
   skip_without_golden();
 }
 
-// A comment above the code only moves lines, and does not change the plan. Other code or operations change the plan.
+// A comment above the code moves lines, but does not change the plan. Changed code or operations do.
 TEST_F(ContractionPlans, DoNotChangeWithLineNumbers) {
   const auto plan_of = [](const std::string& source, const char* instruction) {
     fs::create_directories(folder);
@@ -119,7 +119,8 @@ TEST_F(ContractionPlans, DoNotChangeWithLineNumbers) {
   EXPECT_NE(plan_of("x = a * b + c;\n", "vfmadd231sd"), hash);
 }
 
-// A campaign records the plan of each toolchain's lane. Later verbs refuse another build, and name a changed plan.
+// A campaign records the plan of each toolchain's lane. Later verbs refuse a different build, and name the plan that
+// changed.
 TEST_F(ContractionPlans, AreRecordedAndNamedWhenABuildIsRefused) {
   if (version_of("x86_64-linux-gnu-g++").empty()) GTEST_SKIP() << "no x86_64-linux-gnu-g++";
   fs::create_directories(folder);
@@ -151,7 +152,7 @@ TEST_F(ContractionPlans, AreRecordedAndNamedWhenABuildIsRefused) {
   Json spec{{"subjects", fused}};
   EXPECT_TRUE(open_recorded(spec).empty());
   Json& toolchain = spec["subjects"][0]["toolchains"][0];
-  toolchain["build"] = "0123456789abcdef";  // as another version of the compiler would build it
+  toolchain["build"] = "0123456789abcdef";  // as if another compiler version had built it
   const auto refusal = [&] { return error_of([&] { open_recorded(spec); }); };
   EXPECT_NE(refusal().find("0123456789abcdef then"), std::string::npos) << refusal();
   EXPECT_EQ(refusal().find("fuses"), std::string::npos) << refusal();
@@ -160,7 +161,7 @@ TEST_F(ContractionPlans, AreRecordedAndNamedWhenABuildIsRefused) {
                                 plan(fused, "f32")["plan"].get<std::string>() + " now"}));
 }
 
-// A damaged plan in the cache is read again from the compiler's assembly.
+// If the cached plan is damaged, it is read again from the compiler's assembly.
 TEST_F(ContractionPlans, AreKeptBesideTheBuild) {
   if (version_of("x86_64-linux-gnu-g++").empty()) GTEST_SKIP() << "no x86_64-linux-gnu-g++";
   fs::create_directories(folder);
@@ -179,8 +180,7 @@ TEST_F(ContractionPlans, AreKeptBesideTheBuild) {
   EXPECT_TRUE(recorded_plan("0123456789abcdef", source, "intersects", recipe, {}).is_null());
 }
 
-// Toolchains that round as written fuse nothing. Toolchains for the x87 fuse nothing either. The
-// test checks one algorithm.
+// Toolchains that round as written fuse nothing, and neither do toolchains for the x87. Tests one algorithm.
 TEST_F(ContractionPlans, WhereNothingIsContractedNothingIsFused) {
   const Lane& lane = published_lanes().front();
   for (const Toolchain& toolchain : built_in_toolchains()) {
@@ -192,7 +192,7 @@ TEST_F(ContractionPlans, WhereNothingIsContractedNothingIsFused) {
   }
 }
 
-// GRAZE_FMA_COMMAND compiles the code of the lanes cpu-fma with the flags of a release of Graze.
+// GRAZE_FMA_COMMAND compiles the cpu-fma lanes' code with the flags of a Graze release.
 TEST_F(ContractionPlans, OfCpuFmaAreTheGoldens) {
 #if defined(__x86_64__)
   const Scratch scratch(cache_folder());

@@ -18,19 +18,19 @@ namespace graze::subjects {
 // changed since it was built.
 std::shared_ptr<const SealedCopy> twin_of(const cuda::CudaBuild& build);
 
-// The code that runs on a device if `on_device` is set, otherwise as the twin. `what` is empty if there is neither.
+// The build's code for a device if `on_device` is set, otherwise its twin. `what` is empty if there is no such code.
 Code code_of(const cuda::CudaBuild& build, const Wanted& wanted, bool on_device,
              std::shared_ptr<const SealedCopy> twin);
 
-// The times that the kernels of builds take on this machine's device.
+// How long the builds' kernels take on this machine's device.
 struct KernelCosts {
   std::string device;
-  std::vector<std::vector<double>> nanoseconds;  // per pair; for each build, one number for each pass
+  std::vector<std::vector<double>> nanoseconds;  // per pair: for each build, one number per pass
 };
-inline constexpr std::uint32_t kPairsOfKernelCosts = 1u << 20;  // of the stratum `uniform`, already in device memory
+inline constexpr std::uint32_t kPairsOfKernelCosts = 1u << 20;  // of stratum `uniform`, in device memory
 
-// Measures the times in a separate process, for at most a minute.   Throws: std::runtime_error with the reason why
-// there are no times, such as a missing device; Stopped.
+// Measures the times in a separate process, in at most a minute.   Throws: std::runtime_error with the reason if there
+// are no times, such as a missing device; Stopped.
 KernelCosts kernel_costs(std::span<const cuda::CudaBuild* const> builds);
 
 }  // namespace graze::subjects

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Writes a row {"NAME", "text"}, to OUT for each of the FILES in the folder FROM.
+# Writes to OUT a row {"NAME", "text"}, for each of the FILES in the folder FROM.
 foreach(file IN LISTS FILES)
   file(READ ${FROM}/${file} text)
   string(APPEND rows "{\"${file}\", R\"header(${text})header\"},\n")

@@ -16,7 +16,7 @@ namespace graze::subjects {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 20, kMostListed = 6;
-constexpr std::size_t kMostTokens = 64;  // of a constant's value; a longer value is no epsilon
+constexpr std::size_t kMostTokens = 64;  // in a constant's value; a longer value is no epsilon
 constexpr double kSmall = 1e-3;          // the largest bare number that may be an epsilon to tune
 constexpr double kLargest = 0.1;         // the largest number that may cause a wrong verdict
 constexpr std::size_t kMostNumbers = 6;  // the most numbers that are listed as possible causes
@@ -188,8 +188,8 @@ class Finder {
     return declared ? std::optional(first) : std::nullopt;
   }
 
-  // The token after the value that starts at token `first`. The value of a macro ends with its line, another value at
-  // the next , ; ) or } outside brackets.   Returns: `first` if there is no short value.
+  // The token after the value that starts at token `first`. A macro's value ends with its line, any other at the next ,
+  // ; ) or } outside brackets.   Returns: `first` if there is no short value.
   std::size_t end_of_value(std::size_t first) const {
     const bool of_macro = first >= 3 && is(first - 2, "define") && is(first - 3, "#");
     int depth = 0;
@@ -305,7 +305,7 @@ std::string written_value(const Epsilon& epsilon, double value) {
 
 std::string with_value(std::string_view text, const std::vector<Epsilon>& epsilons, double value,
                        SourceLanguage language) {
-  std::map<std::size_t, std::pair<std::size_t, const Epsilon*>> places;  // the end and the epsilon, by the begin
+  std::map<std::size_t, std::pair<std::size_t, const Epsilon*>> places;  // by first byte: the end, and the epsilon
   for (const Epsilon& epsilon : epsilons) {
     for (const SourcePlace& place : epsilon.places) places[place.begin] = {place.end, &epsilon};
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The epsilon of a user's source: a constant such as kEps, or a small number such as 1e-6f. These functions find an
-// epsilon in the text, and write the text with another value. The text may be anything, and is read once, from front to
-// back.
+// The epsilon in a user's source: a constant such as kEps, or a small number such as 1e-6f. These functions find the
+// epsilon in the text, and replace its value. The text may be anything, and is read once, from front to back.
 #pragma once
 
 #include <cstddef>
@@ -13,27 +12,27 @@
 
 namespace graze::subjects {
 
-// Determines the syntax of the cast to a value's former type. cpp: C++ and CUDA.
+// Determines the syntax of the cast to the old value's type. cpp: C++ and CUDA.
 enum class SourceLanguage { c, cpp };
 
-// The bytes [begin, end) of a source, and the number of their line, from 1.
+// The bytes [begin, end) of a source, and their line number, from 1.
 struct SourcePlace {
   std::size_t begin, end;
   int line;
 };
 
 struct Epsilon {
-  std::string name;                 // the constant's name; a bare number's text
-  std::string written;              // its value in the source: "1e-6f", "4 * FLT_EPSILON"
+  std::string name;                 // the constant's name, or a bare number's text
+  std::string written;              // its value as written: "1e-6f", "4 * FLT_EPSILON"
   std::optional<double> value;      // nothing if the text is not a number
   std::vector<SourcePlace> places;  // of the value; at least one
 };
 
-// The constants that have a value, and the bare numbers between 0 and 1e-3. Each occurs once, in order of first
-// place.   Throws: std::runtime_error for a text of more than 1 MiB.
+// The constants that have a value, and the bare numbers between 0 and 1e-3: each once, in the order of their first
+// places.   Throws: std::runtime_error for a text of more than 1 MiB.
 std::vector<Epsilon> epsilons_in(std::string_view text);
 
-// The first six different texts of numbers above 0 and up to 0.1, FLT_EPSILON, DBL_EPSILON and
+// The first six different texts among numbers above 0 and up to 0.1, FLT_EPSILON, DBL_EPSILON and
 // std::numeric_limits<…>::epsilon(), each with all its places.   Throws: as epsilons_in.
 std::vector<Epsilon> small_numbers_in(std::string_view text);
 
@@ -45,7 +44,7 @@ Epsilon epsilon_of(const std::filesystem::path& source, std::string_view text, c
 std::string with_value(std::string_view text, const std::vector<Epsilon>& epsilons, double value,
                        SourceLanguage language);
 
-// The value as the source would write it: "3.05e-05f".
+// The value in the source's notation: "3.05e-05f".
 std::string written_value(const Epsilon& epsilon, double value);
 
 // "mine.cpp:9", "mine.cpp:9 and 12"; printable.

@@ -104,7 +104,7 @@ TEST(SmallNumbers, AreWhatMayBeAnEpsilonAtAllTheirPlaces) {
             "x < 0.25f || y < 0.25f || z < 0.25;");
 }
 
-// In any text, places are within the text and do not overlap. The time to read a text is proportional to its length.
+// For any text, places lie within the text and do not overlap. Reading takes time proportional to the length.
 TEST(Epsilon, AnyTextIsReadOnce) {
   const auto expect_places = [](const std::string& text) {
     std::vector<Epsilon> all = epsilons_in(text);

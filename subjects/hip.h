@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The contractions that HIP's compiler makes for AMD's GPUs, read from its assembly. No code runs, so there is no
-// verdict.
+// The contractions that HIP's compiler makes for AMD's GPUs, read from its assembly. The code does not run, so there
+// are no verdicts.
 #pragma once
 
 #include <filesystem>
@@ -15,10 +15,10 @@ namespace graze::subjects {
 
 inline constexpr std::string_view kHipTargets[] = {"gfx90a", "gfx1100"};
 
-// The reason why hipcc cannot compile here; empty if there is none.
+// Why hipcc cannot compile here; empty if it can.
 std::string why_no_hip();
 
-// The contraction plan for the target of `function`, which takes two triangles. The source is in HIP, CUDA without its
+// The contraction plan of `function`, which takes two triangles, for the target. The source is in HIP, CUDA without its
 // headers, or C++.   Throws: std::runtime_error with the compiler's first error; Stopped.
 ContractionPlan hip_plan(const std::filesystem::path& source, const std::string& function, std::string_view target,
                          const std::vector<std::string>& flags);

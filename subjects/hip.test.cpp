@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of the contractions that hipcc makes, read from the assembly of AMD's GPUs. Without hipcc, tests that
-// compile are skipped.
+// Tests the contractions that hipcc makes, read from its assembly for AMD's GPUs. Without hipcc, tests that compile are
+// skipped.
 #include "subjects/hip.h"
 
 #include <fmt/format.h>
@@ -19,8 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Line 2 has a fused product within an expression. Lines 3 and 4 have a fused product across statements. Line 5 has a
-// quotient.
+// Line 2 has a fused product within an expression, lines 3 and 4 have one across statements, and line 5 has a quotient.
 constexpr const char* kSource = R"(template <class T> __device__ bool meets(const T* a, const T* b) {
   const T u = a[0] * b[0] + a[1];
   const T v = a[2] * b[2];
@@ -97,7 +96,7 @@ TEST_F(Hip, SaysWhatDoesNotCompile) {
   EXPECT_NE(error.find("undefined_name"), std::string::npos) << error;
 }
 
-// In all published algorithms, products are fused. Without contraction, no product is fused.
+// hipcc fuses products in all published algorithms, and none without contraction.
 TEST_F(Hip, ReadsThePublishedAlgorithms) {
   std::size_t read = 0;
   for (const Lane& lane : published_lanes()) {

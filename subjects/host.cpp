@@ -3,10 +3,10 @@
 //   graze-subject-host KIND WHAT NAME SCALAR MEMORY SECONDS DESCRIBE NAMESPACES CACHE
 // The supervisor starts this program again as the process that loads the code and forks workers:
 //   graze-subject-host --worker KIND WHAT NAME SCALAR MEMORY DESCRIBE
-// As the supervisor of a build tool whose temporary files are in the folder SCRATCH:
+// As the supervisor of a build tool that has its temporary files in the folder SCRATCH:
 //   graze-subject-host --run SECONDS SCRATCH NAMESPACES MEMORY WORD...
-// With CUDA, graze-subject-device also times kernels. It prints the device's name and, for each kernel, a line of
-// nanoseconds per pair, one number for each pass:
+// With CUDA, graze-subject-device also times kernels. It prints the device's name and, for each kernel, a line with the
+// nanoseconds per pair of each pass:
 //   graze-subject-device --time PAIRS PASSES f32|f64 PTX [f32|f64 PTX]...
 // KIND WHAT NAME SCALAR:  library FILE NAME f32|f64|any   a shared object and its export; see graze/subject.h
 //                         command TEXT "" f32             a program; see subjects/README.md
@@ -68,7 +68,7 @@ namespace {
 std::uint64_t* words;
 const void* pairs;
 
-// Sends a message to the supervisor. Exits if the supervisor is gone, because then nobody needs the answer.
+// Sends a message to the supervisor. Exits if the supervisor is gone, because nobody needs the answer then.
 void send_message(const void* message, std::size_t size) {
   if (send(kTalkFd, message, size, MSG_NOSIGNAL) != static_cast<ssize_t>(size)) _exit(0);
 }
@@ -100,7 +100,7 @@ std::string exported(void* library) {
   }
   std::string names;
   int count = 0;
-  // Linkers place the string table directly after the symbol table.
+  // Linkers place the string table right after the symbol table, so it marks the end.
   for (const ElfW(Sym)* s = symbols; s && strings && reinterpret_cast<const char*>(s) < strings; ++s) {
     const int type = ELF64_ST_TYPE(s->st_info);
     if (s->st_shndx == SHN_UNDEF || (type != STT_FUNC && type != STT_OBJECT) || s->st_name >= string_bytes) continue;
@@ -111,11 +111,11 @@ std::string exported(void* library) {
   return names.empty() ? "none that it exports" : "only " + names + (count > 8 ? ", …" : "");
 }
 
-// The file to load. This is the sealed copy of the code that graze verified.
+// The file to load: the sealed copy of the code that graze verified.
 const std::string kCode = "/proc/self/fd/" + std::to_string(kCodeFd);
 
-// Adds the folders that the code names by $ORIGIN to the library path, because the sealed copy is in no folder. The
-// system reads the library path only when a program starts, so this program starts itself again.
+// Adds the folders that the code names through $ORIGIN to the library path, because the sealed copy is in no folder.
+// The system reads the library path only when a program starts, so this program restarts itself.
 void name_origin(const std::string& file, char** argv) {
   struct stat code {};
   if (fstat(kCodeFd, &code) != 0 || code.st_size == 0) return;
@@ -127,7 +127,7 @@ void name_origin(const std::string& file, char** argv) {
   std::string folders;
   for (const std::string word : {"$ORIGIN", "${ORIGIN}"}) {
     for (std::size_t at = bytes.find(word); at != bytes.npos; at = bytes.find(word, at + 1)) {
-      const std::size_t begin = bytes.find_last_of(std::string(":\0", 2), at) + 1;  // of an entry in a list of folders
+      const std::size_t begin = bytes.find_last_of(std::string(":\0", 2), at) + 1;  // of the list's entry
       std::string found(bytes.substr(begin, bytes.find_first_of(std::string(":\0", 2), at) - begin));
       found.replace(at - begin, word.size(), folder);
       folders += found + ':';
@@ -195,8 +195,7 @@ graze_subject subject_of_library(const std::string& file, const std::string& nam
   return subject;
 }
 
-// Whether foreign code forked this process from the worker. In that case, the code's call returns in both
-// processes.
+// Whether foreign code forked this process from the worker. Then the call returns in both processes.
 bool is_copy = false;
 
 signed char answer_of(int said) {
@@ -204,15 +203,15 @@ signed char answer_of(int said) {
   return said < 0 ? kDeclined : said > 0 ? kIntersects : kDisjoint;
 }
 
-// The processor time of this thread. Other load on the machine does not change it.
+// The processor time of this thread, which other load on the machine does not change.
 std::uint64_t processor_nanoseconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000 + static_cast<std::uint64_t>(now.tv_nsec);
 }
 
-// The processor's rounding mode, precision and treatment of subnormals after the code was loaded. Code that changes
-// these settings would change the answers to later pairs.
+// The processor's rounding mode, precision and treatment of subnormals after the code was loaded. If the code changes
+// them, its answers for later pairs would change.
 class FloatControl {
  public:
   FloatControl() : modes_(modes()), x87_(x87()) {}
@@ -259,7 +258,7 @@ class Asking {
     const std::uint64_t start = processor_nanoseconds();
     for (std::size_t i = 0; i < question.count; ++i) {
       if (!is_chosen(question.first, i)) continue;
-      if (block_ && !question.singly) {  // such a question is about all pairs
+      if (block_ && !question.singly) {  // such a question asks about all pairs
         ask_block(question, false, 0, question.count);
         break;
       }
@@ -267,8 +266,8 @@ class Asking {
     }
     const std::uint64_t taken = processor_nanoseconds() - start;
     if (block_ && !question.singly) {
-      // Asks in parts that begin at odd places. So almost every pair gets another place in its block, modulo every
-      // power of two.
+      // Asks in parts that begin at odd places. So modulo any power of two, almost every pair gets another place in its
+      // block.
       const std::size_t half = std::min<std::size_t>(question.count, question.count / 2 | 1);
       const std::size_t first = std::min<std::size_t>(half, 3);
       ask_block(question, true, half, question.count);
@@ -285,12 +284,12 @@ class Asking {
  private:
   const Number* pair(std::size_t i) const { return static_cast<const Number*>(pairs) + 18 * i; }
 
-  // The value of an answer before a block's function writes it. The value differs between the passes, so an answer that
-  // the function does not write makes its pair unstable.
+  // The initial value of an answer in a block. It differs between the passes, so a pair is unstable if the function
+  // does not write its answer.
   static signed char unwritten(bool second) { return second ? kDisjoint : kDeclined; }
 
-  // Asks about one pair. If the call changes the floating-point control, the second pass gives a different answer, so
-  // that the pair is unstable.
+  // Asks about one pair. If the call changes the floating-point control, the second pass reports a different answer, so
+  // the pair is unstable.
   signed char one(std::size_t i, bool second) const {
     signed char said = unwritten(second);
     if (block_) {
@@ -308,7 +307,7 @@ class Asking {
     signed char said[kMostAsked];
     std::fill_n(said, kMostAsked, unwritten(second));
     block_(pair(begin), end - begin, said);
-    if (control_.restore()) _exit(1);  // the supervisor then asks one pair at a time
+    if (control_.restore()) _exit(1);  // the supervisor then asks about one pair at a time
     for (std::size_t i = begin; i < end; ++i) put_answer(words, question, second, i, answer_of(said[i - begin]));
   }
 
@@ -323,7 +322,7 @@ template <class Ask>
   const Says ready = Says::ready;
   send_message(&ready, sizeof ready);
   for (Question question; recv(kTalkFd, &question, sizeof question, 0) == sizeof question;) {
-    if (question.worker != getpid()) continue;  // sent to an earlier worker, which ended before it read the question
+    if (question.worker != getpid()) continue;  // sent to an earlier worker, which has ended
     Answered answered{Says::answered, 0, question.nonce, 0};
     try {
       answered.nanoseconds = ask(question);
@@ -336,7 +335,7 @@ template <class Ask>
 }
 
 #ifdef GRAZE_SUBJECT_DEVICE
-// The build whose PTX is in the file.
+// A build with the PTX from the file.
 cuda::CudaBuild build_in(const std::string& file, std::string_view scalar) {
   cuda::CudaBuild build{};
   build.scalar = scalar == "f64" ? Scalar::f64 : Scalar::f32;
@@ -366,7 +365,7 @@ void set_limits(const char* mib) {
   set_limit(RLIMIT_NOFILE, kDescriptorsOfAProcess);
 }
 
-// Turns off address randomisation where possible, so that code whose answers depend on addresses repeats its answers.
+// Turns off address randomisation where possible, so that code repeats its answers even if they depend on addresses.
 void fix_addresses(char** argv) {
   const int now = personality(0xffffffff);
   if (now < 0 || now & ADDR_NO_RANDOMIZE || personality(static_cast<unsigned long>(now) | ADDR_NO_RANDOMIZE) < 0)
@@ -400,7 +399,7 @@ constexpr int kNotReady = 99;  // the exit status of a worker that cannot start 
   };
 #ifdef GRAZE_SUBJECT_DEVICE
   if (kind == "device") {
-    // Opened after the fork, because a forked process cannot use its parent's device.
+    // The device is opened here, because a forked process cannot use its parent's device.
     const std::unique_ptr<cuda::SubjectOnDevice> device = cuda::open_on_device(build_in(kCode, scalar));
     const auto decide = [&]<class Number>(const Number* from, std::size_t count, signed char* answers) {
       device->decide(std::span(reinterpret_cast<const BasicPair<Number>*>(from), count), answers);
@@ -413,7 +412,7 @@ constexpr int kNotReady = 99;  // the exit status of a worker that cannot start 
   std::abort();  // serve does not return
 }
 
-// Loads the code, then forks a worker, and another worker whenever the last one has ended.
+// Loads the code, then forks a worker, and another one whenever the last has ended.
 int load_and_fork(char** argv, const std::string& kind, const std::string& what, const std::string& name,
                   const std::string& scalar, const char* memory, bool describe) {
   if (kind == "library") name_origin(what, argv);
@@ -453,7 +452,7 @@ int load_and_fork(char** argv, const std::string& kind, const std::string& what,
     loaded.of_blocks = 1;
     if (kind == "command" && describe) put(loaded.text, described_by(what).c_str());
   }
-  if (getpid() != self) _exit(0);  // a copy of this process, which the code forked while it was loaded
+  if (getpid() != self) _exit(0);  // the code forked this copy of the process while it was loaded
   loaded.says = Says::loaded;
   send_message(&loaded, sizeof loaded);
   pthread_atfork(nullptr, nullptr, [] { is_copy = true; });
@@ -471,8 +470,8 @@ int load_and_fork(char** argv, const std::string& kind, const std::string& what,
     }
     if (worker < 0) return 1;
     int status = 0;
-    // A worker that makes this process its tracer (PTRACE_TRACEME) stops at each signal. This loop detaches the worker
-    // and passes the signal on.
+    // A worker can make this process its tracer (PTRACE_TRACEME), and then stops at each signal. This loop detaches the
+    // worker and passes the signal on.
     while (waitpid(worker, &status, 0) < 0 ? errno == EINTR : WIFSTOPPED(status))
       ptrace(PTRACE_DETACH, worker, nullptr, WSTOPSIG(status));
     if (WIFEXITED(status) && WEXITSTATUS(status) == kNotReady) return 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Subjects that attack the processes around them on the pairs that `bad` selects. On other pairs they answer whether a
+// Subjects that attack the processes around them on the pairs that `bad` selects. On other pairs, they answer whether a
 // is left of b.
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -43,7 +43,7 @@ static int alone(void) {
   return readlink("/proc/1/exe", name, 99) > 0 && strstr(name, "graze-subject") != 0;
 }
 
-// Calls act for each mapping with this name. Some mappings are memory that is shared with the supervisor.
+// Calls `act` for each mapping with this name. Some mappings are memory that is shared with the supervisor.
 static void mappings(const char* name, void (*act)(char* from, size_t bytes)) {
   FILE* maps = fopen("/proc/self/maps", "r");
   char line[1024];
@@ -154,7 +154,7 @@ static void child_eats(void) {
   }
 }
 ATTACK(children_eat, for (int i = 0; i < 4; ++i) child_eats(); for (;;) pause())
-// Fills the buffers of sockets in several processes. These buffers are the system's memory.
+// Fills socket buffers, which are system memory, in several processes.
 static void child_fills_sockets(void) {
   static char bytes[1 << 16];
   static int ends[1024];
@@ -171,7 +171,7 @@ static void raise_buffers(void) {
   if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0 &&
       setsockopt(ends[0], SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes) < 0 &&
       setsockopt(ends[0], SOL_SOCKET, SO_SNDBUFFORCE, &bytes, sizeof bytes) < 0 &&
-      setsockopt(ends[0], SOL_SOCKET, SO_PASSCRED, &bytes, sizeof bytes) == 0)  // other options are free
+      setsockopt(ends[0], SOL_SOCKET, SO_PASSCRED, &bytes, sizeof bytes) == 0)  // other options are allowed
     abort();
 }
 ATTACK(raises_buffers, raise_buffers())
@@ -189,7 +189,7 @@ static void make_segments(void) {
   while (count < 10 && (made[count] = shmget(IPC_PRIVATE, 100 << 20, 0600 | IPC_CREAT)) >= 0) ++count;
   const int limited = count < 10;
   while (count > 0) shmctl(made[--count], IPC_RMID, 0);
-  if (limited) abort();  // without a limit, the pair gets an answer, and the test fails
+  if (limited) abort();  // without a limit, the pair gets an answer and the test fails
 }
 ATTACK(eats_system_v, make_segments())
 static void make_semaphores(void) {
@@ -256,7 +256,8 @@ static int parent_of(int process) {
   if (file) fclose(file);
   return parent;
 }
-// Freezes the supervisor, the process that loaded this code, and this process, with control groups of either version.
+// Freezes the supervisor, the process that loaded this code, and this process, through control groups of either
+// version.
 static int freeze(void) {
   const char* roots[] = {"/sys/fs/cgroup/freezer", "/sys/fs/cgroup/unified", "/sys/fs/cgroup"};
   const char* test = getenv("GRAZE_HOSTILE_TEST");
@@ -274,7 +275,8 @@ static int freeze(void) {
   return 0;
 }
 ATTACK(freezes_supervisor, if (freeze()) for (;;) pause(); abort())
-// Tries to write to the cache by its name, by a relative name, by moving a folder, and by a file handle.
+// Tries to write to the cache by its absolute name, by a relative name, after moving a folder, and through a file
+// handle.
 static int write_to_cache(void) {
   char name[300], other[300];
   const char* cache = getenv("XDG_CACHE_HOME");
@@ -282,7 +284,7 @@ static int write_to_cache(void) {
   if (open(name, O_WRONLY | O_CREAT, 0600) >= 0) return 1;
   if (open("cache/graze/hostile", O_WRONLY | O_CREAT, 0600) >= 0) return 1;
   snprintf(name, sizeof name, "%s", cache ? cache : "");
-  for (int i = 0; i < 2; ++i) {  // moves the folder, and then the folder above
+  for (int i = 0; i < 2; ++i) {  // tries to move the folder, then its parent
     snprintf(other, sizeof other, "%s-moved", name);
     if (rename(name, other) == 0) return rename(other, name) == 0;
     *strrchr(name, '/') = 0;
@@ -324,7 +326,7 @@ static void raise_task_limit(void) {
   abort();
 }
 ATTACK(raises_task_limit, raise_task_limit())
-// Makes calls for memory that no limit counts, and for programs that run in the kernel and reach every process.
+// Tries calls that get memory that no limit counts, or run programs in the kernel that reach every process.
 static void call_the_kernel(void) {
   const long calls[] = {SYS_bpf, SYS_perf_event_open, SYS_io_uring_setup, 447 /* memfd_secret */};
   char nothing[128] = {0};
@@ -335,7 +337,8 @@ static void call_the_kernel(void) {
   abort();
 }
 ATTACK(calls_the_kernel, call_the_kernel())
-// Tries to keep memory: by a page in a pipe that keeps a huge page, by keys that remain, and by files in memory.
+// Tries to keep memory allocated: by a page in a pipe that holds a huge page, by keys that remain, and by files in
+// memory.
 static void keep_memory(void) {
   int ends[2];
   char page[4096] = {0};
@@ -350,13 +353,13 @@ static void keep_memory(void) {
   abort();
 }
 ATTACK(keeps_memory, keep_memory())
-// Whether the device can be opened. The null device may be in its place, and is harmless.
+// Whether the device can be opened, unless the harmless null device has been mounted over it.
 static int can_open_device(const char* name) {
   struct stat at;
   int fd = open(name, O_RDONLY | O_NOCTTY | O_NONBLOCK);
   return fd >= 0 && !(fstat(fd, &at) == 0 && S_ISCHR(at.st_mode) && at.st_rdev == makedev(1, 3));
 }
-// Opens devices that make other devices, keep memory or are terminals, and settings of the system.
+// Tries to open system settings, and devices that make other devices, keep memory or are terminals.
 static void open_devices(void) {
   const char* closed[] = {"/dev/loop-control",
                           "/dev/kvm",
@@ -383,7 +386,7 @@ static void open_devices(void) {
   abort();
 }
 ATTACK(opens_devices, open_devices())
-// Tries to keep shared memory by a descriptor, so that it remains when nobody maps it.
+// Tries to open a descriptor of shared memory, which would keep the memory when nobody maps it.
 static void keep_mapping(void) {
   char name[100];
   char* p = mmap(0, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -392,7 +395,7 @@ static void keep_mapping(void) {
   abort();
 }
 ATTACK(keeps_mapping, keep_mapping())
-// Reads pages without writing them. Each page is the system's zero page, but needs its own page table.
+// Reads pages without writing them. All are the system's zero page, but each needs its own page table.
 static void eat_page_tables(void) {
   const size_t bytes = (size_t)320 << 30, step = 2 << 20;
   volatile char* p = mmap(0, bytes, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Foreign code that attacks the processes around it. Each attack must be a verdict on its own pair only.
+// Runs foreign code that attacks the processes around it. Each attack must affect only the verdict on its own pair.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -51,7 +51,7 @@ std::size_t count_in(const fs::path& folder) {
 
 struct Hostile : testing::Test {
   static inline fs::path folder, before;
-  static inline std::string mark;  // in the environment of all processes that this process starts
+  static inline std::string mark;  // set in the environment of all processes that this one starts
   static inline pid_t bystander = -1;
   static inline int terminal = -1;
   static inline std::vector<Pair> pairs;
@@ -160,8 +160,7 @@ bool has_namespaces() {
   return inside;
 }
 
-// Whether "/" is a mount point. In a chroot, "/" is no mount point, and the cache cannot be protected
-// (subjects/README.md).
+// Whether "/" is a mount point. In a chroot it is not, and the cache cannot be protected (subjects/README.md).
 bool root_is_a_mount_point() {
   std::ifstream in("/proc/self/mountinfo");
   for (std::string line; std::getline(in, line);) {
@@ -175,8 +174,8 @@ bool root_is_a_mount_point() {
 
 struct Attack {
   const char* name;
-  bool without_namespaces = true;  // also test without a process namespace
-  bool on_others = false;          // other pairs may fail as well
+  bool without_namespaces = true;  // whether to test without a process namespace too
+  bool on_others = false;          // whether other pairs may fail too
 };
 
 std::ostream& operator<<(std::ostream& out, const Attack& attack) { return out << attack.name; }
@@ -193,7 +192,7 @@ TEST_P(EveryAttack, IsAVerdictOfItsPairs) {
     GTEST_SKIP() << "this system gives no terminal";
   if (attack.name == std::string_view("writes_to_cache") && !root_is_a_mount_point())
     GTEST_SKIP() << "in a chroot, code can write to the cache";
-  describe(Hostile::attack(attack.name, namespaces));  // from now on Graze keeps its own programs open
+  describe(Hostile::attack(attack.name, namespaces));  // from here on, Graze keeps its own programs open
   const std::size_t maps = count_in("/proc/self/map_files"), files = count_in("/proc/self/fd");
   {
     ForeignProcesses subject(Hostile::attack(attack.name, namespaces), Scalar::f32);
@@ -279,7 +278,7 @@ INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::Values
 TEST_F(Hostile, ABombOfAUserWithoutANamespaceEnds) {
   if (geteuid() != 0) GTEST_SKIP() << "for users other than root, EveryAttack tests these attacks";
   fs::permissions(folder, fs::perms::all);
-  const fs::path program = fs::read_symlink("/proc/self/exe");  // it runs other programs of the same folder
+  const fs::path program = fs::read_symlink("/proc/self/exe");  // this program runs others in the same folder
   for (const char* bomb : {"forks_a_bomb", "forks_a_bomb_of_sessions", "forks_a_bomb_in_a_chain"}) {
     SCOPED_TRACE(bomb);
     const pid_t asking = fork();
@@ -326,7 +325,7 @@ TEST_F(Hostile, PageTablesAreMemory) {
     return true;
   };
   for (const std::uint64_t most :
-       {std::uint64_t{1} << 40, std::uint64_t{1} << 20})  // with whole pages of files, and with shares
+       {std::uint64_t{1} << 40, std::uint64_t{1} << 20})  // counting whole pages of files; counting shares of them
     EXPECT_GE(usage_after(read_pages, most), std::min<std::uint64_t>(kPages * 4096, most));
 }
 
@@ -339,7 +338,7 @@ char* written(int flags) {
   return static_cast<char*>(at);
 }
 
-// Forks a child that waits, and that ends with its parent.
+// Forks a child that waits and ends together with its parent.
 bool fork_idle() {
   const pid_t parent = getpid(), idle = fork();
   if (idle == 0) {
@@ -389,8 +388,8 @@ TEST_F(Hostile, ChildrenThatAreLeftInSilenceEndWithTheSubject) {
   for (const bool namespaces : {true, false}) {
     auto subject = std::make_unique<ForeignProcesses>(attack("leaves_children_silently", namespaces, 1), Scalar::f32);
     expect_left_of(verdicts(*subject));
-    // The other three processes are the supervisor, the process that loads the code, and the worker. A child may still
-    // start.
+    // Apart from `children`, three processes remain: the supervisor, the process that loads the code, and the worker. A
+    // child may still have to start.
     std::size_t left = 0;
     for (int times = 0; times < 6000 && (left = left_over().size()) < 3 + children; ++times) usleep(10'000);
     EXPECT_GE(left, 3 + children);
@@ -428,7 +427,7 @@ TEST_F(Hostile, ConstructorsThatAttackAreOneLine) {
       code.namespaces = namespaces;
       try {
         const Description description = describe(code);
-        EXPECT_FALSE(description.f32 || description.f64);  // the code itself sent this message
+        EXPECT_FALSE(description.f32 || description.f64);  // the code itself sent the message
       } catch (const std::runtime_error& error) {
         EXPECT_NE(std::string(error.what()).find(c.name), std::string::npos) << error.what();
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
@@ -453,7 +452,7 @@ TEST_F(Hostile, CodeThatIsGoneAfterItWasReadIsLoadedAgain) {
   EXPECT_FALSE(fs::exists(file));
 }
 
-// Processes that start after the file was changed also run the code that was read, not the file's new content.
+// Processes that start after the file was changed still run the code that was read, not the file's new content.
 TEST_F(Hostile, CodeThatIsReplacedOrWrittenIntoIsTheCodeThatWasRead) {
   const auto text = [](const char* compare) {
     return std::string(
@@ -552,7 +551,7 @@ TEST_F(Hostile, DescriptionsOfProgramsAreBounded) {
   expect_nothing_left();
 }
 
-// Requests the stop while the subject hangs. Without the request, each pair would take an hour.
+// The stop is requested while the subject hangs. Without the request, each pair would take an hour.
 TEST_F(Hostile, ARequestToStopEndsEveryWait) {
   const fs::path file = built_from("hangs", "int intersects(const float a[9], const float b[9]) { for (;;) ; }");
   for (const bool namespaces : {true, false}) {
@@ -603,7 +602,7 @@ TEST_F(Hostile, AFrozenSupervisorIsAVerdictAndIsLeft) {
   }
   pairs = all;
   EXPECT_FALSE(left_over().empty());
-  // Thaws the processes repeatedly, because a thawed process may freeze all of them again.
+  // Thaws the processes repeatedly, because a thawed process may freeze them all again.
   for (int times = 0; times < 1000 && rmdir(group.c_str()) != 0; ++times) {
     const bool second = fs::exists(group / "cgroup.freeze");
     std::ofstream(group / (second ? "cgroup.freeze" : "freezer.state")) << (second ? "0" : "THAWED") << std::flush;
@@ -613,7 +612,7 @@ TEST_F(Hostile, AFrozenSupervisorIsAVerdictAndIsLeft) {
   expect_nothing_left();
 }
 
-// Foreign code may delay its supervisor, but not the guardian, which is outside the code's namespace.
+// Foreign code can delay its supervisor, but not the guardian, which is outside the code's namespace.
 TEST_F(Hostile, ASupervisorThatCannotEndIsEndedWithGraze) {
   if (!has_namespaces()) GTEST_SKIP() << "only a process namespace has a guardian";
   for (const bool program : {false, true}) {
@@ -631,7 +630,7 @@ TEST_F(Hostile, ASupervisorThatCannotEndIsEndedWithGraze) {
     });
     std::vector<pid_t> supervisors;  // each is process 1 of its namespace
     while (supervisors.empty()) {
-      usleep(300'000);  // until the supervisor waits
+      usleep(300'000);  // by then the supervisor waits
       for (const pid_t process : left_over()) {
         const std::string status = text_of("/proc/" + std::to_string(process) + "/status");
         const std::size_t numbers = status.find("NSpid:");
@@ -736,7 +735,7 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
     EXPECT_EQ(run_program({{"no-such-program"}, 600, namespaces}, scratch.path(), said), 127);
     EXPECT_EQ(said, "No such file or directory\n");
     EXPECT_THROW(run("setsid sleep 1000 & sleep 1001", 0.2), std::runtime_error);
-    const std::string error = error_of([&] {  // tail keeps the last line, which has 300 MiB here, and then waits
+    const std::string error = error_of([&] {  // tail keeps the last line, which here has 300 MiB, and then waits
       run_program({{"sh", "-c", "{ head -c 300M /dev/zero; sleep 1000; } | tail -n 1"}, 600, namespaces, 100},
                   scratch.path(), said);
     });
@@ -760,8 +759,8 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
   }
 }
 
-// If each call forks, each pair leaves one more process, but there must be no second worker. There must also be no
-// second process that loads the code and starts workers.
+// If each call forks, each pair leaves one more process. But there must be neither a second worker nor a second process
+// that loads the code and starts workers.
 TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
   const std::string includes = "#include <signal.h>\n#include <unistd.h>\n",
                     function = "int intersects(const float a[9], const float b[9]) {\n";
@@ -779,7 +778,7 @@ TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
   }
 }
 
-// The supervisor, the guardian and graze run in process groups that the code is not in.
+// The code is not in the process groups of the supervisor, the guardian and graze.
 TEST_F(Hostile, CodeThatStopsItsProcessGroupStopsOnlyItself) {
   const auto bad = std::find_if(pairs.begin(), pairs.end(), is_bad);
   ASSERT_NE(bad, pairs.end());
@@ -802,8 +801,8 @@ TEST_F(Hostile, CodeThatStopsItsProcessGroupStopsOnlyItself) {
   }
 }
 
-// A tracee stops at each signal. A worker's tracer here is the process that forks the workers. The tracer must not
-// mistake the stop for an end: it would fork another worker too early, and the code would be loaded again.
+// A traced process stops at each signal. Here, the process that forks the workers traces one of them. It must not
+// mistake a stop for an end: it would fork another worker too early, and the code would be loaded again.
 TEST_F(Hostile, AWorkerThatIsTracedByItsParentIsAVerdictAndTheCodeStaysLoaded) {
   const fs::path loads = folder / "loads";
   const struct {
@@ -846,7 +845,7 @@ TEST_F(Hostile, AWorkerThatIsTracedByItsParentIsAVerdictAndTheCodeStaysLoaded) {
   }
 }
 
-// An unexpected line shifts all later answers. Asking about single pairs shows the pair that caused the line.
+// An unexpected line shifts all later answers. Asking about single pairs shows which pair caused the line.
 TEST_F(Hostile, LinesThatWereNotAskedForAreVerdictsOfTheirPairs) {
   std::ofstream(folder / "extra.c") << R"(#include <stdio.h>
 #include <stdlib.h>
@@ -877,8 +876,8 @@ int main(int count, char** words) {
       std::vector<Verdict> expected;
       for (const Pair& pair : pairs)
         expected.push_back(is_bad(pair) || how.ends_with("before") ? Verdict::crashed : left_of(pair));
-      // A line that is written apart counts for its pair only if it arrives in time. Load on the machine may delay
-      // the line.
+      // A line that is written separately counts for its pair only if it arrives in time, and load on the machine may
+      // delay it.
       std::vector<Verdict> found;
       for (int tries = how.ends_with("apart") ? 20 : 1; tries > 0 && found != expected; --tries)
         found = verdicts(subject);
@@ -896,7 +895,7 @@ TEST_F(Hostile, ProgramsThatEndAtOnceCrashOnEveryPair) {
   }
 }
 
-// The asking process may be killed at any time. All other processes must end with the asking one.
+// The asking process may be killed at any time. All other processes must end with it.
 TEST_F(Hostile, NothingOutlivesTheProcessThatAsks) {
   for (const char* name : {"leaves_children_silently", "forks_without_end", "stops_itself"}) {
     for (const bool namespaces : {true, false}) {

@@ -18,8 +18,8 @@
 namespace graze::subjects {
 namespace {
 
-constexpr double kDescribeSeconds = 10;  // for a program to start and describe itself
-constexpr int kSilence = 2;              // milliseconds without output after the last answer
+constexpr double kDescribeSeconds = 10;  // the time for a program to start and describe itself
+constexpr int kSilence = 2;              // milliseconds to wait for output after the last answer
 
 std::string line_of(const float* pair) {
   std::string line;
@@ -86,7 +86,7 @@ void LineProtocol::read_some() {
   if (count > 0) lines_.add(bytes, static_cast<std::size_t>(count));
 }
 
-// Writes the lines, and reads meanwhile, so that a full pipe causes no deadlock.
+// Writes the lines and reads at the same time, so that a full pipe causes no deadlock.
 void LineProtocol::send(const std::string& lines) {
   expect_silence(0);
   std::size_t sent = 0;

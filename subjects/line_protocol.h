@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a program that answers on its standard output, with one line for each line of input. A line of input has the 18
-// coordinates of a pair as hexadecimal floats (0x1.8p+1). Answers: 0 disjoint, 1 intersects, ? declined.
+// Runs a program that answers each line of input with one line on its standard output. An input line has a pair's 18
+// coordinates as hexadecimal floats (0x1.8p+1). Answers: 0 disjoint, 1 intersects, ? declined.
 #pragma once
 
 #include <sys/types.h>
@@ -15,11 +15,11 @@ namespace graze::subjects {
 // Splits a program's output into lines. The output may be anything and may be endless.
 class Lines {
  public:
-  static constexpr std::size_t kMostBytes = std::size_t{1} << 20;  // the most bytes that may wait to be taken
+  static constexpr std::size_t kMostBytes = std::size_t{1} << 20;  // the most bytes that may be waiting
 
-  // Throws: std::runtime_error when more than kMostBytes wait.
+  // Throws: std::runtime_error if more than kMostBytes are waiting.
   void add(const char* bytes, std::size_t count);
-  // Takes the next line, without its end.   Returns: whether there was a whole line.
+  // Takes the next line, without the newline.   Returns: whether there was a whole line.
   bool take(std::string& line);
   bool empty() const { return taken_ == bytes_.size(); }
 
@@ -43,7 +43,7 @@ class LineProtocol {
  public:
   explicit LineProtocol(const std::string& command) : pipes_(start_program(command)) {}
 
-  // Asks about the question's pairs, forward and then backward. Writes each answer into `words` as it arrives. After
+  // Asks about the question's pairs, forward and then backward. Writes each answer into `words` when it arrives. After
   // the last answer, waits 2 ms for unexpected output.
   // Throws: std::runtime_error when the program ends, gives an invalid answer, or writes unexpected output.
   void ask(const Question& question, const float* pairs, std::uint64_t* words);
@@ -52,7 +52,7 @@ class LineProtocol {
   void send(const std::string& lines);
   void read_some();
   std::string line();  // waits for a line
-  // Throws: std::runtime_error when there is unexpected output, now or within this time.
+  // Throws: std::runtime_error if there is unexpected output now or within this time.
   void expect_silence(int milliseconds);
 
   Pipes pipes_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of graze-subject-opencl on the device that it chooses. Without OpenCL these tests are skipped.
+// Tests graze-subject-opencl on the device that it chooses. Without OpenCL these tests are skipped.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -31,11 +31,11 @@ constexpr std::uint64_t kPairsOfStratum = 4096;
 fs::path runner() { return fs::read_symlink("/proc/self/exe").parent_path() / "graze-subject-opencl"; }
 
 struct Said {
-  std::string text;  // of standard output and standard error, without the last end of line
+  std::string text;  // standard output and standard error, without the last newline
   int status;
 };
 
-// Runs graze-subject-opencl without questions.
+// Runs graze-subject-opencl without asking it about pairs.
 Said run(const std::string& arguments, const std::string& environment = "") {
   std::FILE* out = popen((environment + " '" + runner().string() + "' " + arguments + " 2>&1 </dev/null").c_str(), "r");
   Said said{"", -1};
@@ -76,7 +76,7 @@ struct OpenCl : testing::Test {
     code.content = std::make_shared<SealedCopy>(file.filename().string(), code_in(file));
     return code;
   }
-  // The number of pairs on which the verdict differs from that of the algorithm's lane `cpu`.
+  // The number of pairs on which the verdict differs from that of the algorithm's `cpu` lane.
   static std::size_t count_differing(const std::string& algorithm, Scalar scalar, const std::string& mode) {
     ForeignProcesses subject(code(std::string(kExamples) + "thesis.cl", algorithm, mode, std::string(name(scalar))),
                              scalar);
@@ -99,8 +99,8 @@ TEST_F(OpenCl, TheThesisAlgorithmsWithoutContractionEqualTheirCpuLanes) {
   }
 }
 
-// A canary. pocl contracts within an expression, and NVIDIA's compiler across statements. If these verdicts were equal,
-// the test above would not show that `nofma` reaches the compiler. A device without FMA does not contract.
+// A canary: pocl contracts within an expression, NVIDIA's compiler across statements. If these verdicts were equal, the
+// test above would not show that `nofma` reaches the compiler. A device without FMA does not contract.
 TEST_F(OpenCl, ByDefaultTheCompilerContracts) {
   if (run("--platforms").text.find("FMA yes") == std::string::npos) GTEST_SKIP() << "no device has FMA";
   EXPECT_GT(count_differing("interval_overlap", Scalar::f32, "default"), 0u);
@@ -129,7 +129,7 @@ TEST_F(OpenCl, WhatAKernelPrintsIsNoAnswer) {
   EXPECT_EQ(verdicts_of(subject, few), std::vector<Verdict>(few.size(), Verdict::disjoint));
 }
 
-// Compiling a function does not call it.
+// Compiling a function must not call it: this one would hang.
 TEST_F(OpenCl, AFunctionThatFailsOnZerosCompiles) {
   const fs::path file = write("zeros.cl",
                               "int f(const REAL* a, const REAL* b) {\n"

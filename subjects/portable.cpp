@@ -22,9 +22,9 @@ bool is_within(const fs::path& file, const fs::path& folder) {
   return !relative.empty() && *relative.begin() != "..";
 }
 
-// A compiler flag. If the flag names a folder or a file for the preprocessor, it has a name and a value: "-I", "dir".
+// A compiler flag. A flag that names a folder or a file for the preprocessor has a name and a value: "-I", "dir".
 struct PathFlag {
-  std::string name, value;  // for any other flag: an empty name, and the flag's text in `value`
+  std::string name, value;  // any other flag: no name, and its text in `value`
   bool is_joined = true;    // name and value are one word; false: two words
 };
 
@@ -88,7 +88,7 @@ Portable of_source(const Opened& subject, const std::string& folder) {
       return file == normal(flag.value) || (!flag.name.empty() && is_within(file, normal(flag.value)));
     });
   };
-  std::set<fs::path> rooted = files;  // plus a name in each folder that the flags name, so that `common` contains it
+  std::set<fs::path> rooted = files;  // plus a file in each folder that the flags name, for common_folder
   for (const PathFlag& flag : flags) {
     if (!flag.name.empty() && flag.name != "-include" && names_files(flag)) rooted.insert(normal(flag.value) / "any");
   }
@@ -113,7 +113,7 @@ void replace_all(std::string& text, const std::string& old, const std::string& n
     text.replace(at, old.size(), now);
 }
 
-// Folders of the system. Files in these folders are not packed.
+// System folders, whose files are not packed.
 constexpr const char* kOfSystem[] = {"/usr/",   "/bin/", "/sbin/", "/lib/", "/lib32/",
                                      "/lib64/", "/opt/", "/etc/",  "/dev/", "/proc/"};
 
@@ -130,7 +130,8 @@ Portable of_command(const Opened& subject, const std::string& folder) {
                                          subject.wanted.name, printable(program)));
       continue;
     }
-    // A file below the current folder keeps its name; the command runs in the folder that gets the files.
+    // A file below the current folder keeps its relative name, because the command runs in the folder that gets the
+    // files.
     const fs::path relative = fs::path(absolute).lexically_relative(here);
     const std::string name =
         is_within(absolute, here) ? relative.string() : (fs::path(folder) / file.file.filename()).string();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files and the arguments with which a subject runs in another folder or on another machine.
+// The files and arguments that a subject needs to run in another folder or on another machine.
 #pragma once
 
 #include <filesystem>
@@ -16,11 +16,11 @@ struct Portable {
   std::vector<std::pair<std::string, std::filesystem::path>> files;  // each name in that folder, and the file here
   std::string what;                                                  // for --subject NAME=WHAT
   std::vector<std::string> flags;
-  std::vector<std::string> missing;  // one sentence for each thing that the subject also needs
+  std::vector<std::string> missing;  // one sentence for each further thing that the subject needs
 };
 
-// The files of a source are the source, and the files that it includes from its own folder and from the folders of its
-// flags. A library has one file. The files of a command are those that it names, except programs of the system.
+// A source needs its own file, and the files that it includes from its own folder and the folders in its flags. A
+// library is a single file. A command needs the files that it names, except the system's programs.
 Portable portable(const Opened& subject);
 
 }  // namespace graze::subjects

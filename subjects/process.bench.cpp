@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures the cost of the processes around foreign code. The function does almost nothing, and is called twice for
+// Measures the overhead of the processes around foreign code. The function does almost nothing, and is called twice for
 // each pair.
 #include <benchmark/benchmark.h>
 

@@ -31,7 +31,7 @@ Verdict verdict_of(signed char answer) {
   return answer < kDisjoint || answer > kUnstable ? Verdict::declined : kVerdicts[answer];
 }
 
-// A subject's text converted to valid UTF-8, as results require.
+// The subject's text, made valid UTF-8 as results require.
 std::string fit(const char* text) {
   using Json = nlohmann::json;
   return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
@@ -62,7 +62,7 @@ class SharedPairs {
 };
 
 std::vector<std::string> arguments_of(const Code& code, bool describe) {
-  std::error_code none;  // the folder must exist to be protected
+  std::error_code none;  // only an existing folder can be protected
   std::filesystem::create_directories(cache_folder(), none);
   return {code.kind,
           code.what,
@@ -116,7 +116,7 @@ class HostProcess {
 
   const Loaded& loaded() const { return loaded_; }
 
-  // Returns: the answers; nullopt when the supervisor cannot continue. After nullopt, this object must not be used.
+  // Returns: the answers; nullopt if the supervisor cannot continue. After nullopt, this object must not be used.
   std::optional<Answers> ask(const Pair* pairs, std::size_t count, bool in_double) {
     if (in_double) {
       std::copy_n(&pairs[0].a[0].x, count * 18, static_cast<double*>(pairs_.at()));
@@ -150,8 +150,8 @@ class HostProcess {
 
 namespace {
 
-// Returns: the code's description of itself. A program that fails when it is asked to describe itself is loaded without
-// that question.
+// Returns: the code's description of itself. A program that fails when it is asked for one is loaded without being
+// asked.
 Loaded loaded_of(const Code& code) {
   if (code.kind == "command") {
     try {
@@ -190,7 +190,7 @@ std::unique_ptr<HostProcess> ForeignProcesses::idle_or_new() {
   try {
     return std::make_unique<HostProcess>(code_, false);
   } catch (const HostProcess::CannotLoad&) {
-    return nullptr;  // the code could be loaded before, so it causes this failure itself
+    return nullptr;  // the code could be loaded before, so it caused this failure itself
   }
 }
 
@@ -202,8 +202,8 @@ void ForeignProcesses::decide_all(const AnyPair* pairs, std::size_t count, std::
   const bool in_double = decides_doubles();
   std::unique_ptr<HostProcess> process = idle_or_new();
   bool loads = process != nullptr;
-  signed char how = kCrashed;  // the answer for pairs that get none
-  // Asks about pairs.   Returns: nullopt when the supervisor ended, or when the code can no longer be loaded.
+  signed char how = kCrashed;  // the verdict for pairs without an answer
+  // Returns: nullopt if the supervisor ended, or if the code can no longer be loaded.
   const auto ask = [&](const AnyPair* of, std::size_t size) {
     std::optional<Answers> answers;
     if (!process && loads) loads = (process = idle_or_new()) != nullptr;
@@ -218,7 +218,7 @@ void ForeignProcesses::decide_all(const AnyPair* pairs, std::size_t count, std::
   for (std::size_t begin = 0; begin < count; begin += kMostAsked) {
     const std::size_t size = std::min(count - begin, kMostAsked);
     std::optional<Answers> answers = ask(pairs + begin, size);
-    if (!answers) {  // asks about single pairs, to find the pair at fault
+    if (!answers) {  // asks about one pair at a time, to find the pair at fault
       answers.emplace();
       for (std::size_t i = 0; i < size; ++i) {
         const std::optional<Answers> of_pair = ask(pairs + begin + i, 1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A block function that runs foreign code in separate processes. The code may crash, hang, corrupt memory, lie or
-// attack. Each such failure is a verdict on its pair; a new process is asked about the next pair. This process trusts
-// only the supervisor (supervisor.h), over a socket that foreign code does not have.
+// attack. Each such failure is a verdict on its pair, and a new process is asked about the next pair. This process
+// trusts only the supervisor (supervisor.h), and talks to it over a socket that foreign code does not have.
 #pragma once
 
 #include <map>
@@ -20,14 +20,14 @@ namespace graze::subjects {
 // The code that graze-subject-host loads; the first lines of host.cpp explain the fields.
 struct Code {
   std::string kind;             // "library", "program", "command" or "device"
-  std::string what, name;       // a file and its export, a command, the command that runs a program, or a PTX file
+  std::string what, name;       // a file and its symbol, a command, the command that runs a program, or a PTX file
   std::string scalar = "any";   // for a function without a description
   double timeout = 1;           // seconds for a pair, or for a block of a subject that takes blocks
   std::uint64_t memory = 1024;  // MiB for all processes of the code together
   bool namespaces = true;       // run in a process namespace if the system allows one
-  bool alone = false;           // run one process at a time, because several would wait for one device
+  bool alone = false;           // one process at a time, because several would wait for one device
   std::shared_ptr<const SealedCopy> content = nullptr;  // the bytes to load; null: those of the file
-  std::vector<HashedFile> files = {};                   // of a command; `decide` throws if one of these files changes
+  std::vector<HashedFile> files = {};                   // a command's files; `decide` throws if one of them changes
 };
 
 // A subject's description of itself.
@@ -36,20 +36,20 @@ struct Description {
   unsigned outside = 0;  // a sum of Outside
   std::string version, source, convention;
   bool describes_itself = false;  // has a struct graze_subject
-  std::string symbol;             // of a library: the symbol that was loaded
-  std::string said;               // of a program: the first line of its answer to `describe`
+  std::string symbol;             // a library's symbol that was loaded
+  std::string said;               // the first line of a program's answer to `describe`
   bool of_blocks = false;         // decides many pairs in one call
 
   bool has(Scalar scalar) const { return scalar == Scalar::f32 ? f32 : f64; }
 };
 
-// Loads the code, and asks it to describe itself.   Throws: std::runtime_error with one line when the code cannot be
+// Loads the code, and asks it to describe itself.   Throws: std::runtime_error with one line if the code cannot be
 // loaded; Stopped.
 Description describe(const Code& code);
 
 class HostProcess;
 
-// Decides blocks by foreign code, with one supervisor for each thread that calls at the same time. Thread-safe.
+// Decides blocks with foreign code, using one supervisor for each thread that calls at the same time. Thread-safe.
 class ForeignProcesses : public ForeignCode {
  public:
   ForeignProcesses(Code code, Scalar scalar);
@@ -63,8 +63,8 @@ class ForeignProcesses : public ForeignCode {
   Verdict failure_on_doubles(const DoublePair& pair) override;
   bool decides_doubles() const override { return scalar_ == Scalar::f64; }
 
-  // The processor time that the code took to decide the pairs of the last call once. The code's own process measures
-  // this time, without communication. Nothing for a command, or if the code failed on a pair.
+  // The processor time that the code took for one pass over the pairs of the last call. The code's own process measures
+  // it, without communication. Nothing for a command, or if the code failed on a pair.
   std::optional<std::uint64_t> nanoseconds() const;
   // The same code, in new processes that have seen no pair.
   std::unique_ptr<ForeignProcesses> anew() const;
@@ -84,7 +84,7 @@ class ForeignProcesses : public ForeignCode {
   std::mutex alone_;
   std::optional<std::uint64_t> nanoseconds_;
   std::vector<std::unique_ptr<HostProcess>> idle_;
-  std::map<std::string, Verdict> failures_;  // by the pair's bytes; incomplete, so a missing pair is asked again
+  std::map<std::string, Verdict> failures_;  // by the pair's bytes; incomplete: missing pairs are asked again
 };
 
 }  // namespace graze::subjects

@@ -43,7 +43,7 @@ void add_description(Description& description, const std::string& subject) {
                       subject, shown(key)));
   }
   try {
-    const auto text = [&](const char* key) {  // a blank replaces each control character
+    const auto text = [&](const char* key) {  // control characters become blanks
       std::string value = json.value(key, "");
       for (char& c : value) c = static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? ' ' : c;
       return value;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the answers of a program that a toolchain made from a subject (graze/program.h). The program answers block by
+// Reads the answers of a program that a toolchain built from a subject (graze/program.h). The program answers block by
 // block on its standard output.
 #pragma once
 
@@ -15,7 +15,7 @@ namespace graze::subjects {
 class ProgramProtocol {
  public:
   // Starts the program in a shell and waits for its greeting.
-  // Throws: std::runtime_error when no greeting comes within `seconds`, or when the program's output is not a greeting.
+  // Throws: std::runtime_error if no greeting comes within `seconds`, or if the output is not a greeting.
   ProgramProtocol(const std::string& command, double seconds);
 
   ~ProgramProtocol();  // closes the program's input, which ends the program
@@ -27,11 +27,11 @@ class ProgramProtocol {
 
   // Asks about the question's pairs, forward and then backward. Writes the answers into `words` once all have arrived.
   // The supervisor checks the answers.
-  // Throws: std::runtime_error when the program ends.
+  // Throws: std::runtime_error if the program ends.
   void ask(const Question& question, const void* pairs, bool in_double, std::uint64_t* words);
 
  private:
-  // Writes `bytes`, and reads `count` bytes meanwhile, so that a full pipe causes no deadlock.
+  // Writes `bytes` and reads `count` bytes at the same time, so that a full pipe causes no deadlock.
   void exchange(const std::vector<char>& bytes, void* answer, std::size_t count, double seconds);
 
   Pipes pipes_;

@@ -30,7 +30,7 @@ int graze_published(const Real* p, const Real* q) {{
 }}
 )";
 
-// The header's text with includes relative to its own folder, so that no compiler flag must name the folder above.
+// The header's text with includes relative to its own folder, so that no compiler flag is needed for the parent folder.
 std::string text_of(const Header& header) {
   constexpr std::string_view kInclude = "#include \"core/";
   std::string up, text(header.text);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plays hostile subjects: forged, early, late and destroyed answers in shared memory, arbitrary messages, and arbitrary
-// lines of a program. In every case the questions must end, and an accepted failure must remain.
+// program output. The questions must always end, and an accepted failure must stay a failure.
 #include "subjects/questions.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace graze::subjects {
 namespace {
 
-// Checks that the answers after a step may follow the answers before it.
+// Checks that a step may change the answers `before` into the answers `now`.
 void must_follow(std::span<const signed char> before, std::span<const signed char> now) {
   for (std::size_t i = 0; i < now.size(); ++i) {
     must_hold(now[i] >= kDeclined && now[i] <= kUnstable, "an answer is one of enum Answer");
@@ -82,7 +82,7 @@ void ask_hostile(std::string_view bytes) {
         if (questions.answered() && !program) break;
         questions.failed(how & 1 ? kCrashed : kTimedOut);
         asked = false;
-        if (program) before = before_question;  // no answer to a question that failed counts
+        if (program) before = before_question;  // no answer to a failed question counts
         must_hold(++failures <= (program ? 1 + 12 * count : 1 + 4 * count), "the number of failures is limited");
     }
     must_follow({before.data(), count}, questions.answers());

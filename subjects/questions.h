@@ -10,11 +10,12 @@ namespace graze::subjects {
 
 // Each pair is asked twice, forward and then backward, so that state left behind by one call shows in another. Answers
 // are accepted only in the order of the question, and only once each. A word that is forged, early, late or for another
-// question changes nothing. A program's answers have no numbers: one extra line would give each later pair the answer
-// of another pair. So either all answers to a question count, or none. Single questions find the pair that fails.
+// question changes nothing. A program's answers are not numbered: after one extra line, each later pair would get
+// another pair's answer. So either all answers to a question count, or none. Single questions find the pair that fails.
 class Questions {
  public:
-  // of_blocks: the subject takes blocks of pairs. program: a program answers, by lines or block by block.
+  // of_blocks: whether the subject takes blocks of pairs. program: whether a program answers, line by line or block by
+  // block.
   // Requires: 0 < count <= kMostAsked.
   Questions(std::size_t count, bool of_blocks, bool program) : count_(count), singly_(!of_blocks), program_(program) {}
 
@@ -27,7 +28,7 @@ class Questions {
   // Whether all answers to the last question have been taken.
   bool answered() const { return asked_ == taken_; }
 
-  // To call if the worker ended, or was ended, before it had answered. The next step depends on the subject:
+  // Call this if the worker ended, or was ended, before it had answered. The next step depends on the subject:
   // - blocks: the next question is about the same pairs, one at a time.
   // - single pairs: the first pair without an answer gets `how`, kCrashed or kTimedOut. If no pair has an answer, the
   //   next question is about that pair alone, because code that destroys its own answers fails on a later pair.
@@ -53,20 +54,20 @@ class Questions {
   std::size_t count_;
   bool singly_, program_;
   std::size_t most_ = 2 * kMostAsked;  // the most answers that the next question asks for
-  std::size_t asked_ = 0, taken_ = 0;  // numbers of answers, for the last question
+  std::size_t asked_ = 0, taken_ = 0;  // answers that the last question asks for; answers taken
   bool second_ = false;
   std::size_t at_ = 0;  // forward: the first pair without an answer; backward: the pair after that one
   std::array<signed char, kMostAsked> answers_{};
   std::uint64_t nonce_ = 0;
-  // The state before the last question.
+  // The state before the last question was asked.
   bool second_before_ = false;
   std::size_t at_before_ = 0;
   std::array<signed char, kMostAsked> answers_before_{};
   std::array<signed char, kMostAsked>
-      failed_here_{};  // of a program: how a question failed at each pair; 0: not at all
+      failed_here_{};  // for a program: how a question failed at each pair; 0: not at all
 };
 
-// Sanitises a worker's message about its code: ends texts, replaces control characters, and sets flags to 0 or 1.
+// Sanitises a worker's message about its code: terminates texts, replaces control characters, and sets flags to 0 or 1.
 // Returns: whether the bytes are such a message.
 bool read_loaded(std::span<const char> bytes, Loaded& loaded);
 

@@ -32,7 +32,7 @@ const Opened& opened_of(const Lane& lane) {
   return *found;
 }
 
-// The code that runs a build of the changed source `copy` for the lane's variant, on the device if the lane runs there.
+// The code for the changed source `copy`, built for the lane's variant. Runs on the device if the lane does.
 Code cuda_code(const Lane& lane, const Opened& subject, const fs::path& copy, const std::vector<std::string>& flags) {
   for (const cuda::CudaBuild& build :
        cuda::build_cuda_subject(copy, function_of(subject), flags, cache_folder(), lane.variant)) {
@@ -86,8 +86,8 @@ std::unique_ptr<ForeignProcesses> with_rounded(const Lane& lane, const FusedLine
       lane.scalar);
 }
 
-// The text of the source of a host's lane. Empty if the lane has no source, or if the source has been changed or
-// removed since it was built.
+// The source text of a host lane. Empty if the lane has no source, or if the source has been changed or removed since
+// it was built.
 std::string source_as_built(const Lane& lane) {
   const Opened* subject = opened(lane.lane_name().subject);
   if (!subject || lane.is_cuda() ||
@@ -104,9 +104,8 @@ std::string source_as_built(const Lane& lane) {
 // The builds that changed() has made, by lane and change.
 struct Builds {
   std::mutex mutex;
-  std::map<std::string, std::unique_ptr<ForeignProcesses>>
-      built;  // without processes; null: the source does not compile
-  std::list<std::pair<std::string, std::unique_ptr<ForeignProcesses>>> idle;  // processes handed back, the latest first
+  std::map<std::string, std::unique_ptr<ForeignProcesses>> built;  // never started; null if the source does not compile
+  std::list<std::pair<std::string, std::unique_ptr<ForeignProcesses>>> idle;  // processes handed back, latest first
 };
 
 Builds& builds() {
@@ -140,13 +139,13 @@ TunableSource tunable_source(const Lane& lane, const std::string& name) {
 std::unique_ptr<ForeignProcesses> rebuilt(const Lane& lane, const std::string& text, Scalar scalar,
                                           const std::vector<std::string>& more_flags) {
   const Opened& subject = opened_of(lane);
-  // The name of the folder depends on the text alone, so builds that name their source are cached too.
+  // The folder's name depends only on the text, so builds that contain their source's path can be cached too.
   const fs::path copy = cache_folder() / fmt::format("changed-{:016x}", fnv1a(text, fnv1a(subject.file.string()))) /
                         subject.file.filename();
   write_atomically(copy, text);
   const bool by_nvrtc = subject.kind == "cuda" && lane.is_cuda();
   std::vector<std::string> flags = by_nvrtc ? subject.wanted.flags : host_flags(subject);
-  const std::string folder = subject.file.parent_path().string();  // with files that the source includes
+  const std::string folder = subject.file.parent_path().string();  // for files that the source includes
   flags.push_back((by_nvrtc ? "-I" : "-iquote") + folder);
   flags.insert(flags.end(), more_flags.begin(), more_flags.end());
   if (by_nvrtc) return std::make_unique<ForeignProcesses>(cuda_code(lane, subject, copy, flags), scalar);
@@ -199,7 +198,7 @@ std::vector<Epsilon> small_numbers(const Lane& lane) {
 }
 
 void HandBack::operator()(ForeignProcesses* code) const {
-  std::unique_ptr<ForeignProcesses> ends;  // destroyed after the lock, because its destructor waits for processes
+  std::unique_ptr<ForeignProcesses> ends;  // outlives the lock, because its destructor waits for processes
   Builds& all = builds();
   const std::lock_guard lock(all.mutex);
   all.idle.emplace_front(key, code);
@@ -241,7 +240,7 @@ ChangedCode changed(const Lane& lane, const Change& change) {
 }
 
 std::string in_doubles(std::string_view source) {
-  std::size_t begin = 0;  // of the line after the last #include
+  std::size_t begin = 0;  // where the line after the last #include begins
   for (std::size_t at = 0; at < source.size();) {
     const std::size_t end = std::min(source.find('\n', at), source.size() - 1) + 1;
     const std::size_t first = std::min(source.find_first_not_of(" \t", at), end);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rebuilds a user's source with a change, and runs the build in processes of its own. Such a build tries another
-// epsilon or shows the cause of a wrong verdict.
+// Rebuilds a user's source with a change, and runs the build in separate processes, to try another epsilon or to show
+// the cause of a wrong verdict.
 #pragma once
 
 #include <filesystem>
@@ -16,11 +16,11 @@
 
 namespace graze::subjects {
 
-// The reason why the lane's code cannot be built from another text: "it is a command, and only C, C++ and CUDA sources
-// can be rebuilt". Empty if there is none.
+// Why the lane's code cannot be rebuilt, such as "it is a command, and only C, C++ and CUDA sources can be rebuilt".
+// Empty if it can.
 std::string why_not_rebuilt(const Lane& lane);
 
-// A source of a user's lane, with the epsilon in it.
+// The source of a user's lane, and the epsilon in it.
 struct TunableSource {
   std::filesystem::path file;
   std::string text;
@@ -38,8 +38,8 @@ TunableSource tunable_source(const Lane& lane, const std::string& name);
 std::unique_ptr<ForeignProcesses> rebuilt(const Lane& lane, const std::string& text, Scalar scalar,
                                           const std::vector<std::string>& more_flags = {});
 
-// The number that replaces an epsilon. As it is positive, comparisons of 0 keep their outcome. It is a normal number in
-// float32.
+// The number that replaces an epsilon. Because it is positive, comparisons of 0 with it keep their outcome. It is a
+// normal number in float32.
 inline constexpr double kNegligible = 1e-36;
 struct Change {
   std::vector<Epsilon> negligible = {};  // `value` replaces these numbers
@@ -49,34 +49,35 @@ struct Change {
   std::optional<FusedLine> rounded = {};  // the line whose fused products are rounded
 };
 
-// The lines of the lane's source at which its compiler fuses products into additions. Empty if the compiler fuses none,
-// if there is no source, or if the source has changed since it was built.   Throws: Stopped.
+// The lines of the lane's source at which its compiler fuses products into additions. Empty if there are none, if there
+// is no source, or if the source has changed since it was built.   Throws: Stopped.
 std::vector<FusedLine> fused_lines_of(const Lane& lane);
 
-// Whether the lane's source names what depends on the build, such as __FMA__ or sizeof. Then a build with other flags
-// or types may be other code, whose verdicts show nothing about this code.
+// Whether the lane's source uses something that depends on the build, such as __FMA__ or sizeof. If so, a build with
+// other flags or types may contain different code, whose verdicts show nothing about this one.
 bool selects_by_build(const Lane& lane);
 
 // Whether the lane is built from a C or C++ source whose file exists and is unchanged.
 bool has_source_as_built(const Lane& lane);
 
-// Whether the lane's source may have an epsilon, as a small number or by a name; nothing if no source can be read.
+// Whether the lane's source may have an epsilon, as a small number or a named constant; nothing if no source can be
+// read.
 std::optional<bool> may_have_epsilon(const Lane& lane);
 
 // The small numbers in a lane's source file. None if the file is missing, changed, or larger than 1 MiB.
 std::vector<Epsilon> small_numbers(const Lane& lane);
 
-// The processes of a changed build, with a single user. The destructor hands the processes back. The kMostIdle that
-// were handed back last wait for the next user; older ones end.
+// The processes of a changed build, for one user at a time. The destructor hands them back. The last kMostIdle that
+// were handed back wait for the next user; older ones end.
 inline constexpr int kMostIdle = 12;  // enough for all changes of one lane
 struct HandBack {
-  std::string key = {};  // names the lane and the change
+  std::string key = {};  // identifies the lane and the change
   void operator()(ForeignProcesses* code) const;
 };
 using ChangedCode = std::unique_ptr<ForeignProcesses, HandBack>;
 
-// The lane's code with this change, which is built once in the lifetime of this process. Null if the lane's source file
-// is missing or changed since it was built, or if the changed source does not compile.
+// The lane's code with this change, built at most once per process. Null if the lane's source file is missing or has
+// changed since it was built, or if the changed source does not compile.
 // Thread-safe.   Throws: Stopped.
 ChangedCode changed(const Lane& lane, const Change& change);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of sources that are rebuilt with a change.
+// Tests sources that are rebuilt with a change.
 #include "subjects/rebuilt.h"
 
 #include <gtest/gtest.h>
@@ -94,7 +94,8 @@ TEST_F(Rebuilt, ChangesAreSeenInVerdicts) {
   EXPECT_EQ(said(changed(lane, {.flags = {"-ftrivial-auto-var-init=pattern"}}), pair), Verdict::disjoint);
 }
 
-// However many threads ask, only the builds and a few processes remain. A build has one descriptor, a process has two.
+// No matter how many threads ask, only the builds and a few processes remain. A build has one descriptor, a process has
+// two.
 TEST_F(Rebuilt, FewProcessesStay) {
   const Lane& lane = opened_lane(
       "many", "#ifndef N\n#define N 0\n#endif\nbool intersects(const float* a, const float*) { return *a < N; }\n");

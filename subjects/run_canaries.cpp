@@ -42,7 +42,7 @@ std::string run_canaries(const std::string& compiler, const std::string& run) {
   const bool cxx = is_cxx(compiler);
   const fs::path source = scratch.path() / (cxx ? "canaries.cpp" : "canaries.c"), program = scratch.path() / "canaries";
   write_atomically(source, kSource[0].second);
-  // The standard for subjects, unless the command names a standard itself.
+  // The same standard as for subjects, unless the command names one itself.
   const char* standard = compiler.find("-std=") != compiler.npos ? "" : cxx ? "-std=gnu++20" : "-std=gnu11";
   int status = 0;
   const std::string said = shell_output(

@@ -10,14 +10,14 @@
 
 namespace graze::subjects {
 
-// Whether the command compiles C++: the name of its program contains "++". Otherwise it compiles C.
+// Whether the command compiles C++, not C: its program's name contains "++".
 bool is_cxx(std::string_view compiler);
 
 // Compiles the canaries with the command and runs them.   run: as Toolchain::run.   Returns: the output of the
 // canaries.   Throws: std::runtime_error with the compiler's first error, or when the program fails; Stopped.
 std::string run_canaries(const std::string& compiler, const std::string& run);
 
-// The documented claim for code that the command compiles; see documented_claim.   Throws: as run_canaries.
+// The documented_claim for code that the command compiles.   Throws: as run_canaries.
 std::optional<Claim> claim_of(const std::string& compiler);
 
 }  // namespace graze::subjects

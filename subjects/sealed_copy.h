@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A copy of code in memory that nobody can change. Graze loads exactly the bytes that it verified, even if the file
-// changes meanwhile.
+// An in-memory copy of code that nobody can change. With it, Graze loads exactly the bytes that it verified, even if
+// the file changes meanwhile.
 #pragma once
 
 #include <string>
@@ -10,13 +10,13 @@ namespace graze::subjects {
 
 class SealedCopy {
  public:
-  // name: the name of the copy in a process's list of mappings.   Throws: std::system_error.
+  // name: shown for the copy in a process's list of mappings.   Throws: std::system_error.
   SealedCopy(const std::string& name, std::string_view bytes);
   ~SealedCopy();
   SealedCopy(const SealedCopy&) = delete;
   SealedCopy& operator=(const SealedCopy&) = delete;
   int fd() const { return fd_; }
-  // The name by which this process can open the copy. It is valid as long as this object exists.
+  // The path at which this process can open the copy, as long as this object exists.
   std::string file() const { return "/proc/self/fd/" + std::to_string(fd_); }
 
  private:

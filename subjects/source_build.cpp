@@ -29,8 +29,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kCudaHost = "#include <graze/cuda_host.h>\n";
-// Headers below include/ in the cache folder. On the host, a CUDA source includes the headers in cuda/, not the
-// toolkit's.
+// Headers that are written below include/ in the cache folder. On the host, a CUDA source includes those in cuda/
+// instead of the toolkit's.
 constexpr std::pair<std::string_view, std::string_view> kHeaders[] = {
 #include "subjects/headers.inc"
     {"cuda/cuda.h", kCudaHost},
@@ -70,7 +70,7 @@ static int graze_of_f64(const double* a, const double* b) { return FUNCTION((con
 GRAZE_SUBJECT(graze_subject) = {.abi = GRAZE_SUBJECT_ABI, .f32 = graze_f32 ? graze_of_f32 : 0, .f64 = graze_f64 ? graze_of_f64 : 0};
 )";
 
-// The compiled file for HIP. In a C++ source, every function becomes device code too, because C++ has no decorations.
+// The compiled file for HIP. Functions in a C++ source have no decorations, so all of them also become device code.
 constexpr std::string_view kHip = R"(#include <hip/hip_runtime.h>
 #ifdef GRAZE_SAYS_WHERE
 #include SOURCE
@@ -116,7 +116,7 @@ std::string command_with(const Recipe& recipe, const std::vector<std::string>& f
   return command;
 }
 
-// Throws: std::runtime_error if the compiler made no file. A flag such as --version can cause this.
+// Throws: std::runtime_error if the compiler made no file, as with a flag such as --version.
 void expect_made(const fs::path& file, const std::string& name, const Recipe& recipe,
                  const std::vector<std::string>& flags) {
   if (!fs::exists(file))
@@ -125,7 +125,7 @@ void expect_made(const fs::path& file, const std::string& name, const Recipe& re
                fmt::format("the compiler reported no error and made no object file: {}", command_with(recipe, flags))));
 }
 
-// The flags in the compiler's name, as in CXX='c++ -Og', and the environment variables that name its parts.
+// The flags that belong to the compiler's name, as in CXX='c++ -Og', and the environment variables that name its parts.
 std::vector<std::string> further_flags(const std::string& compiler) {
   std::vector<std::string> flags;
   std::istringstream words(compiler);
@@ -138,7 +138,7 @@ std::vector<std::string> further_flags(const std::string& compiler) {
   return flags;
 }
 
-// Whether the text of a preprocessed source suggests assembler code that includes files.
+// Whether a preprocessed source may have assembler code that includes files.
 bool may_include_by_assembler(std::string preprocessed) {
   for (char& c : preprocessed) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return preprocessed.find("incbin") != preprocessed.npos || preprocessed.find(".include") != preprocessed.npos;
@@ -160,8 +160,8 @@ bool assembler_lists_files(const std::string& compiler, const std::vector<std::s
   return known[compiler] = status == 0 && fs::exists(list);
 }
 
-// The files in a list that the assembler or the preprocessor wrote, one on each line. Omits files in the folder `own`,
-// and names of other things than files.
+// The files in a list that the assembler or the preprocessor wrote, one per line. Omits files in the folder `own`, and
+// names that are not files.
 std::string listed_files(const fs::path& list, const fs::path& own) {
   std::string text = text_of(list), file, files;
   text = text.substr(std::min(text.find(": "), text.size())) + ' ';
@@ -198,13 +198,13 @@ std::uint64_t hash_of_listed(const std::string& files, std::uint64_t hash) {
 }
 
 constexpr std::string_view kObject = ".so", kProgram = ".program";
-constexpr int kMostBuilds = 4;  // attempts to build code that changes meanwhile
+constexpr int kMostBuilds = 4;  // attempts to build code that keeps changing
 
-// The state of all inputs of a build when they were read.
+// The state of a build's inputs when they were read.
 struct Reading {
   std::uint64_t hash = 0;
-  std::string states;       // of the files, after they were read; they show a change that was undone between readings
-  std::string not_covered;  // the inputs that the hash leaves out, in words
+  std::string states;       // states of the files after reading; they reveal a change that was later undone
+  std::string not_covered;  // inputs that the hash does not cover, in words
   bool is_whole = false;    // whether the preprocessor found all files
   bool operator==(const Reading&) const = default;
 };
@@ -250,7 +250,7 @@ namespace {
 bool is_c(const fs::path& source) { return source.extension() == ".c"; }
 bool is_cuda(const fs::path& source) { return source.extension() == ".cu"; }
 
-// The flag for our headers of CUDA. The user's flags come later, because they may name the toolkit's headers.
+// The flag for our CUDA headers. It precedes the user's flags, which may name the toolkit's headers.
 std::string headers_for(const fs::path& source) {
   return is_cuda(source) ? " -I" + shell_word((cache_folder() / "include/cuda").string()) : "";
 }
@@ -265,8 +265,8 @@ Recipe recipe_of(const VariantInfo& variant, const fs::path& source) {
           std::string(variant.flags)};
 }
 
-// Uses the GNU dialects. In the ISO dialects, GCC does not contract C, and from version 13 on keeps no excess precision
-// in C++.
+// Uses the GNU dialects. In the ISO dialects, GCC does not contract C and, from version 13 on, keeps no excess
+// precision in C++.
 Recipe recipe_of(const Toolchain& toolchain, const fs::path& source) {
   const bool c = is_c(source);
   const std::string& compiler = c ? toolchain.cc : toolchain.cxx;
@@ -286,7 +286,7 @@ struct Wrapped {
   std::string expected;  // the compiler's message if the function has other types
 };
 
-// Writes the file that is compiled into `folder`.
+// Writes the file that is to be compiled. It is in `folder`.
 Wrapped wrapped(const fs::path& source, const std::string& function, const Recipe& recipe,
                 const std::vector<std::string>& flags, const fs::path& folder) {
   const bool c = is_c(source);
@@ -300,7 +300,7 @@ Wrapped wrapped(const fs::path& source, const std::string& function, const Recip
   const std::string_view of_gpu = recipe.is_kernel  ? says_where ? "#define GRAZE_SAYS_WHERE\n" : ""
                                   : is_cuda(source) ? kCudaHost
                                                     : std::string_view();
-  // The path is absolute, so that the source finds includes in its own folder.
+  // With an absolute path, the source finds includes in its own folder.
   write(whole, fmt::format("{}#define SOURCE \"{}\"\n#define FUNCTION {}\n#define EXPECTED \"{}\"\n{}{}", of_gpu,
                            fs::absolute(source).string(), function, expected,
                            recipe.is_kernel   ? kHip
@@ -308,7 +308,7 @@ Wrapped wrapped(const fs::path& source, const std::string& function, const Recip
                            : c                ? kC
                                               : kCpp,
                            recipe.is_program ? "#include <graze/program.h>\n" : ""));
-  // If the real time were used, code with __TIME__ would have another hash at each reading.
+  // With the real time, code that uses __TIME__ would get a different hash at each reading.
   return {fmt::format("SOURCE_DATE_EPOCH=${{SOURCE_DATE_EPOCH:-0}} {} -I{} {}", command_with(recipe, flags),
                       shell_word((cache_folder() / "include").string()), shell_word(whole.string())),
           expected};
@@ -354,13 +354,13 @@ Built build_source(const fs::path& source, const std::string& function, const Re
   if (status != 0)
     throw std::runtime_error(
         cannot("compile", name,
-               status == 127  // as a shell reports it
+               status == 127  // a shell's status for a missing command
                    ? fmt::format("there is no compiler '{}'; install one{}", compiler,
                                  recipe.is_program ? "" : std::string(", or name it in ") + (c ? "CC" : "CXX"))
                    : fmt::format("'{} --version' ended with exit status {}", compiler, status)));
-  // The same compiler version may use other parts from another machine's PATH, and the compiler may be a script.
+  // On another machine's PATH, the same compiler version may use other parts, and the compiler may be a script.
   identity += shell_output(
-      // The name is read from a file, because a pipe would also wait for processes that the compiler leaves behind.
+      // Reads the name from a file: a pipe would also wait for processes that the compiler leaves behind.
       fmt::format("for part in as ld {1}; do {0} -print-prog-name=$part > {3} 2>/dev/null; read -r name < {3}; "
                   "file=$(command -v \"$name\") && cksum < \"$file\"; done; cksum < \"$(command -v {2})\"",
                   compiler, c ? "cc1" : "cc1plus", compiler.substr(0, compiler.find(' ')),
@@ -373,7 +373,7 @@ Built build_source(const fs::path& source, const std::string& function, const Re
   all_flags.insert(all_flags.end(), flags.begin(), flags.end());
   const auto lists = [&] {
     return assembler_lists_files(compiler, flags, scratch);
-  };  // called only where the answer matters
+  };  // called only if the answer matters
   const fs::path included = scratch.path() / "included.d";
   std::string assembled;  // the files that the assembler read in its last run
   const auto read = [&] {
@@ -389,14 +389,14 @@ Built build_source(const fs::path& source, const std::string& function, const Re
     reading.states = states_of_listed((fs::exists(included) ? listed_files(included, folder) : "") + assembled);
     return reading;
   };
-  // When it compiles, the compiler reads the files once more. If they were the same before and after it ran, it
-  // compiled the code that was hashed.
+  // The compiler reads the files again when it compiles. If they were the same before and after, it compiled the code
+  // that was hashed.
   for (int builds = 0; builds < kMostBuilds; ++builds) {
     const Reading before = read();
     Built built{folder / fmt::format("{:016x}{}", before.hash, recipe.is_program ? kProgram : kObject),
                 before.not_covered, nullptr, first_line};
-    // If the assembler reads files, the object gets another name in the next round and is never loaded from the cache,
-    // because only another run of the assembler shows which files it reads now.
+    // If the assembler reads files, the object gets another name in the next round and is never loaded from the cache:
+    // only another assembler run shows which files are read now.
     if (before.is_whole && before.not_covered.empty() && assembled.empty()) {
       if (const auto kept = kept_content(built.file)) {
         built.content = std::make_shared<SealedCopy>(built.file.filename().string(), *kept);
@@ -410,7 +410,7 @@ Built build_source(const fs::path& source, const std::string& function, const Re
     if (status != 0) {
       std::string error = first_error(said);
       if (error.find(expected) != error.npos) error = name + ": " + expected;
-      // Messages of the linker, or about a full disk, do not name the source.
+      // Messages from the linker, or about a full disk, do not name the source.
       if (error.find(source.filename().string()) == error.npos) error = cannot("compile", name, error);
       throw std::runtime_error(error);
     }

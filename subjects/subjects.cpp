@@ -32,17 +32,17 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// A subject that is open. The lane table points to entries, so they are never freed.
+// An open subject. The lane table points to entries, so they are never freed.
 struct Entry {
   Opened opened;
   std::string source, coplanar, degenerate;  // of `info`
   AlgorithmInfo info;
   std::map<std::string, std::unique_ptr<ForeignProcesses>> running;  // by the lane's name within the subject: "f64/cpu"
-  std::vector<cuda::CudaBuild> builds;                               // of CUDA code: one for each lane
+  std::vector<cuda::CudaBuild> builds;                               // for CUDA code: one for each lane
   std::vector<std::shared_ptr<const SealedCopy>> twins;  // one for each build; null if the build has no twin
   struct FromToolchain {
     Toolchain toolchain;
-    std::string build, compiler;  // its cached program; empty: the program cannot be built or run here
+    std::string build, compiler;  // its cached program; empty if that cannot be built or run here
   };
   std::deque<FromToolchain> from_toolchains = {};
 };
@@ -81,7 +81,7 @@ const Lane* find_published(std::string_view name) {
   return found == published_lanes().end() ? nullptr : &*found;
 }
 
-// Foreign code and compilers run with a /dev/shm of their own (subjects/containment.h).
+// Foreign code and compilers run with their own /dev/shm (subjects/containment.h).
 void expect_visible(const std::string& name, const fs::path& file) {
   if (fs::weakly_canonical(file).string().starts_with("/dev/shm/"))
     throw std::runtime_error(fmt::format(
@@ -148,7 +148,7 @@ Opened parsed(const Wanted& wanted) {
   return result;
 }
 
-// The text for a kind of pair: a note that the subject's convention excludes this kind, or else `otherwise`.
+// The text for a kind of pair: a note if the subject's convention excludes this kind, or else `otherwise`.
 std::string says(const Description& description, unsigned outside, std::string_view otherwise) {
   if (!(description.outside & outside)) return std::string(otherwise);
   return "not in its contract" + (description.convention.empty() ? "" : ": " + description.convention);
@@ -180,8 +180,8 @@ LaneName lane_name(const std::string& subject, const cuda::CudaBuild& build) {
   return {subject, std::string(name(build.scalar)), std::string(name(build.variant)), ""};
 }
 
-// The evidence for this build from the proof record beside the source. If no record verifies this build, the evidence
-// of the build itself.
+// The evidence for this build from the proof record beside the source, or the build's own evidence if no record
+// verifies it.
 std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
   std::string why;
   const Json record = Json::parse(plain_file(proof_file(source), why).value_or(""), nullptr, false);
@@ -200,8 +200,8 @@ std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
   return cuda::evidence(build);
 }
 
-// Throws: std::runtime_error if the subject's code is not the code that a campaign ran.   recorded: the hash of that
-// code; empty accepts any code.
+// Throws: std::runtime_error if the subject's code is not the code that a campaign ran.   recorded: that code's hash;
+// an empty one accepts any code.
 void expect_code(const Opened& subject, const std::string& recorded) {
   if (const std::string found = fmt::format("{:016x}", subject.code.hash); !recorded.empty() && found != recorded)
     throw std::runtime_error(fmt::format(
@@ -209,15 +209,15 @@ void expect_code(const Opened& subject, const std::string& recorded) {
         subject.wanted.what, found, recorded));
 }
 
-// The compiler, environment and builds of a source that a host compiler built, for record().
+// For record(): the compiler, environment and builds of a source that a host compiler built.
 Json how_built(const Opened& source, const std::vector<Built>& built) {
   Json made = {{"compiler", built.front().compiler}, {"environment", compiler_environment(source.file)}};
   for (const Built& build : built) made["builds"].push_back(build.file.stem().string());
   return made;
 }
 
-// Makes the host's lanes of a CUDA source whose function is __host__ __device__. The evidence of a lane that cannot be
-// built is the reason.
+// Makes the host lanes of a CUDA source whose function is __host__ __device__. If a lane cannot be built, its evidence
+// is the reason.
 void add_host_lanes(Entry& entry, std::vector<Lane>& made) {
   Opened& o = entry.opened;
   const Scalar scalar = entry.builds.front().scalar;
@@ -249,8 +249,8 @@ void add_host_lanes(Entry& entry, std::vector<Lane>& made) {
   if (!built.empty()) o.made["host"] = how_built(o, built);
 }
 
-// Adds the lanes of a CUDA source, which run on the device or as twins. If a lane has neither, its
-// evidence is the reason.
+// Adds the lanes of a CUDA source, which run on the device or as twins. If a lane can do neither, its evidence is the
+// reason.
 void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   const Opened& o = entry.opened;
   std::vector<Lane> made;
@@ -297,8 +297,8 @@ Code code_by(const Toolchain& toolchain, const Opened& subject, const std::strin
   return code;
 }
 
-// Adds the lanes of toolchains that the entry does not have yet. The evidence of a lane that cannot be built or run
-// here is the reason.   kept: cached programs to load instead of compiling, by toolchain.
+// Adds the toolchains' lanes that the entry does not have yet. If a lane cannot be built or run here, its evidence is
+// the reason.   kept: cached programs to load instead of compiling, by toolchain.
 void add_toolchain_lanes(Entry& entry, const std::vector<Toolchain>& toolchains,
                          const std::map<std::string, std::string>& kept) {
   const bool published = entry.opened.kind == kPublished;
@@ -387,7 +387,7 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
       add_cuda_lanes(entry, on_device, recorded);
       return runs_on_host(entry.opened) ? add_toolchain_lanes(entry, wanted.toolchains, kept) : void();
     }
-    const StopSignals stops;  // only here, because NVRTC's compilations above cannot be stopped
+    const StopSignals stops;  // set only here, because NVRTC's compilations above cannot be stopped
     std::vector<std::pair<Variant, Code>> builds;
     std::vector<Built> built_files;
     if (wish.kind == "source") {
@@ -430,7 +430,7 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
       entry.opened.made = {{"source_hash", fmt::format("{:016x}", wish.hash)}};
       entry.opened.made.update(how_built(wish, built_files));
     }
-    if (wish.kind == "command" || description.describes_itself) {  // a description can change although no file does
+    if (wish.kind == "command" || description.describes_itself) {  // a description can change without any file changing
       entry.opened.code.hash = fnv1a(fmt::format("{}\n{}\n{}\n{}", description.version, description.source,
                                                  description.convention, description.outside),
                                      entry.opened.code.hash);
@@ -515,7 +515,7 @@ ForeignProcesses& processes_of(const Lane& lane) {
 
 namespace {
 
-// The plan of a toolchain's build, as recorded_plan. Null for OpenCL C, which the device's driver compiles.
+// A toolchain build's plan, as from recorded_plan. Null for OpenCL C, which the device's driver compiles.
 Json plan_of(const Opened& subject, const Toolchain& toolchain, const std::string& build) {
   if (subject.kind == "opencl") return nullptr;
   return recorded_plan(build, subject.file, function_of(subject), recipe_of(toolchain, subject.file),
@@ -525,8 +525,8 @@ Json plan_of(const Opened& subject, const Toolchain& toolchain, const std::strin
 }  // namespace
 
 Json record(const std::vector<std::string>& lanes) {
-  const StopSignals stops;                     // while compilers run
-  std::map<std::string, std::string> runners;  // hashes, by the command that runs builds
+  const StopSignals stops;                     // active while compilers run
+  std::map<std::string, std::string> runners;  // hashes of runners, by the command that runs builds
   Json rows;
   for (const Entry& entry : entries()) {
     const Opened& o = entry.opened;
@@ -538,7 +538,7 @@ Json record(const std::vector<std::string>& lanes) {
           }))
         continue;
       from_toolchains.push_back(to_json(row.toolchain));
-      // The plan comes before the build, so that the first difference of two records names the plan.
+      // The plan comes before the build, so that the first difference between two records names the plan.
       if (const Json plan = plan_of(o, row.toolchain, row.build); !plan.is_null())
         from_toolchains.back()["contraction"] = plan;
       from_toolchains.back()["build"] = row.build;
@@ -579,7 +579,7 @@ Wanted recorded_subject(const Json& row, const std::string& name) {
   return wanted;
 }
 
-// The builds of the toolchains in a row of record(), by toolchain.
+// The toolchains' builds in a row of record(), by toolchain.
 std::map<std::string, std::string> recorded_builds(const Json& row) {
   std::map<std::string, std::string> builds;
   for (const Json& toolchain : row.value("toolchains", Json::array()))
@@ -587,7 +587,7 @@ std::map<std::string, std::string> recorded_builds(const Json& row) {
   return builds;
 }
 
-// The contraction plan of a toolchain in a row of record(); null if it has none.
+// A toolchain's contraction plan in a row of record(); null if it has none.
 Json recorded_contraction(const Json& row, const std::string& toolchain) {
   for (const Json& of : row.value("toolchains", Json::array())) {
     if (of.at("name") == toolchain) return of.value("contraction", Json());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Foreign code as lanes, for --subject NAME=WHAT.
+// Adds foreign code as lanes, for --subject NAME=WHAT.
 #pragma once
 
 #include <cstdint>
@@ -30,40 +30,40 @@ struct Wanted {
   std::vector<std::string> flags;          // compiler flags, after ours
   double timeout = 1;                      // seconds
   std::uint64_t memory = 1024;             // MiB
-  std::vector<std::string> builds = {};    // of a C or C++ source: cached builds to load (kept_build), not to compile
-  std::vector<Toolchain> toolchains = {};  // toolchains that compile the source too
+  std::vector<std::string> builds = {};    // for a C or C++ source: cached builds to load (kept_build)
+  std::vector<Toolchain> toolchains = {};  // toolchains that also compile the source
 };
 
 // Splits NAME=WHAT; a file's path becomes absolute.   Throws: UsageError.
 Wanted parse_subject(const std::string& text);
 
-// Adds the subject's lanes to the lane table. If the table already has the same name and content, adds only the missing
+// Adds the subject's lanes to the lane table. If a subject with the same name and content is open, adds only missing
 // lanes of toolchains.   on_device: run CUDA code on the device, not as its twin.
-// Throws: UsageError for a name that is taken; std::runtime_error with one line when the code cannot be loaded.
+// Throws: UsageError for a name that is taken; std::runtime_error with one line if the code cannot be loaded.
 void open(const Wanted& wanted, bool on_device = false);
 
-// The record that a campaign keeps about the subjects of these lanes, to open them again: [{"name", "what", "flags",
+// A campaign's record of the subjects of these lanes, from which they can be opened again: [{"name", "what", "flags",
 // "timeout", "memory", "hash", "source_hash", "compiler", "environment", "builds", "toolchains", "not_covered"}, …].
 // "toolchains" has the toolchains of these lanes: to_json, with "contraction" (recorded_plan), "build" and "compiler".
 // Only sources have "source_hash" (of the file alone) and "compiler". C and C++ sources also have "environment"
 // (compiler_environment) and "builds" (the cached objects). A CUDA source has "compiler", "environment" and "builds" of
 // its host compiler in "host", if one of the lanes runs on the host. "not_covered" describes the parts that the hash
-// leaves out, and is absent if there are none. The record is null when no lane has a subject.
+// leaves out, and is absent if there are none. The record is null if no lane belongs to a subject.
 nlohmann::ordered_json record(const std::vector<std::string>& lanes);
 
 // Opens the subjects that a campaign recorded, unless they are open already.   changed: whether to refuse changed code.
 // Returns: a line for each subject whose code differs from the code that the campaign ran.
-// Throws: std::runtime_error when the code of a newly opened subject is missing, or has changed and is refused.
+// Throws: std::runtime_error if the code of a newly opened subject is missing, or has changed and is refused.
 enum class Changed { refused, used };
 std::vector<std::string> open_recorded(const nlohmann::ordered_json& spec, bool on_device = false,
                                        Changed changed = Changed::refused);
 
-// Opens the code of a row of record() under another name, if the code still exists: as the unchanged file or, for a C
-// or C++ source, as the builds that ran.   Returns: whether the code exists.   Throws: Stopped; UsageError for a name
-// that is taken.
+// Opens the code in a row of record() under another name, if it still exists: as the unchanged file or, for a C or C++
+// source, as the builds that ran.   Returns: whether the code exists.   Throws: Stopped; UsageError for a name that is
+// taken.
 bool open_kept(const nlohmann::ordered_json& row, const std::string& name);
 
-// How a subject was opened, so that a case can be shown again.
+// How a subject was opened, so that a case can be reproduced.
 struct Opened {
   Wanted wanted;
   std::string kind;  // "library", "source", "cuda", "opencl", "command", "published"
@@ -71,26 +71,26 @@ struct Opened {
   std::string function;                                            // empty: the user named none
   std::uint64_t hash = 0;                                          // of the file, or of the command
   CodeHash code;                                                   // of all code that is compiled or run
-  std::shared_ptr<const SealedCopy> content;                       // of a library or OpenCL source: the hashed bytes
+  std::shared_ptr<const SealedCopy> content;                       // a library's or OpenCL source's hashed bytes
   Description description;                                         // of a build
   nlohmann::ordered_json made = nlohmann::ordered_json::object();  // how a source was compiled; see record()
 };
 // Null if no foreign subject has this name.
 const Opened* opened(std::string_view subject);
 
-// The user's flags for a host compiler. A CUDA source has flags for NVRTC, so only those with -D, -U and -I are kept.
+// The user's flags for a host compiler. A CUDA source's flags are for NVRTC, so only -D, -U and -I are kept.
 std::vector<std::string> host_flags(const Opened& source);
 
-// Reads the file and the function from `wanted`, and adds no lanes.   Throws: as open.
+// Reads the file and the function from `wanted`, without adding lanes.   Throws: as open.
 Opened named_by(const Wanted& wanted);
 
 // The function for which a source is built; "intersects" if the user named none.
 std::string function_of(const Opened& source);
 
-// The builds of all opened CUDA sources, with the names of their lanes.
+// The builds of all opened CUDA sources, with their lanes' names.
 std::vector<cuda::NamedBuild> cuda_builds();
 
-// The file for the proof record of a CUDA source. A lane whose twin the record covers reports the record as evidence.
+// The file for a CUDA source's proof record. A lane whose twin the record covers reports it as evidence.
 std::filesystem::path proof_file(const std::filesystem::path& source);
 
 // The toolchain of a foreign lane; null if it has none.

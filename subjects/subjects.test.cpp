@@ -170,8 +170,7 @@ TEST_F(Subjects, WhatTheCodeItselfTakesIsKnown) {
   ASSERT_TRUE(slow);
   EXPECT_GT(*slow, 3000u * 2000);  // at least 2 µs per pair: 20,000 steps
   std::optional<std::uint64_t> quick;
-  for (int tries = 0; tries < 50 && (!quick || 20 * *quick >= *slow);
-       ++tries) {  // other processes may use the core meanwhile
+  for (int tries = 0; tries < 50 && (!quick || 20 * *quick >= *slow); ++tries) {  // other processes may use the core
     quick = nanoseconds("libbad.so", "good");
     ASSERT_TRUE(quick);
   }
@@ -204,7 +203,7 @@ TEST_F(Subjects, EndlessLoopsAndMemoryEnd) {
   pairs = all;
 }
 
-// A process that is killed just before it answers leaves no answer for another pair.
+// A process that is killed just before it answers must not leave its answer to another pair.
 TEST_F(Subjects, TimesAtTheLimitAreVerdictsOrTooLate) {
   const std::vector<Pair> all = pairs;
   pairs.assign(all.begin(), all.begin() + 300);
@@ -227,8 +226,8 @@ TEST_F(Subjects, DescriptionsAndBlocksAndExceptions) {
   expect(throws, Verdict::crashed);
   ForeignProcesses in_blocks({"library", (folder / "libdescribed.so").string(), "in_blocks"}, Scalar::f32);
   expect(in_blocks, Verdict::crashed);
-  // The answers of this subject depend on the place in a block. In the second pass, all pairs but the first three have
-  // other places.
+  // This subject's answers depend on the place in a block. In the second pass, all pairs but the first three have other
+  // places.
   ForeignProcesses by_place({"library", (folder / "libdescribed.so").string(), "by_place_in_block"}, Scalar::f32);
   const std::vector<Verdict> placed = verdicts(by_place);
   std::size_t wrong = 0, unstable = 0;
@@ -280,7 +279,7 @@ for number, line in enumerate(sys.stdin, 1):
     SCOPED_TRACE(how);
     expect(run(how), verdict);
   }
-  // No pair makes this program fail; it fails after a number of lines.
+  // No particular pair makes this program fail; it fails after some number of lines.
   const std::vector<Verdict> found = run("ages");
   std::size_t crashed = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -292,7 +291,7 @@ for number, line in enumerate(sys.stdin, 1):
   pairs = all;
 }
 
-// A program may describe itself when Graze asks. A program that does not know the question runs without a description.
+// A program may describe itself when Graze asks. If it does not know the question, it runs without a description.
 TEST_F(Subjects, AProgramMayDescribeItself) {
   const std::string answers = "; while read line; do echo 1; done";
   const auto open_program = [&](const std::string& name, const std::string& describes) {
@@ -336,7 +335,7 @@ TEST_F(Subjects, AProgramMayDescribeItself) {
             std::string::npos);
 }
 
-// Published algorithms that are opened as foreign sources give exactly the verdicts of their lanes.
+// Published algorithms that are opened as foreign sources give the same verdicts as their own lanes.
 class OurOwn : public Subjects, public testing::WithParamInterface<int> {};
 
 TEST_P(OurOwn, AsForeignCodeAreTheirLanes) {
@@ -366,7 +365,7 @@ int decide(const Real a[9], const Real b[9]) {
   open(wanted);
   std::size_t compared = 0;
   for (const char* scalar : {"f32", "f64"}) {
-    {  // only `cpu`: for cpu-fma, the compiler may fuse other products in another function
+    {  // only `cpu`, because for cpu-fma the compiler may fuse other products in another function
       const std::string lane = std::string("/") + scalar + "/cpu";
       const Lane *foreign = find_lane(name + lane), *ours = find_lane(id + lane);
       ASSERT_TRUE(ours);
@@ -407,7 +406,7 @@ TEST_F(Subjects, SourcesInCAndCppFindTheirFunctionAndScalar) {
     const std::vector<Verdict> found = verdicts(lane->decide);
     for (std::size_t i = 0; i < pairs.size(); ++i) ASSERT_EQ(found[i], left_of(pairs[i])) << id;
   }
-  // A function of doubles gets the doubles of a pair, not their float32 values.
+  // A function of doubles gets a pair's doubles, not their float32 values.
   ASSERT_TRUE(find_lane("in_double/f64/cpu")->decide.decides_doubles());
   EXPECT_FALSE(find_lane("both/f32/cpu")->decide.decides_doubles());
   std::vector<DoublePair> close;
@@ -420,14 +419,14 @@ TEST_F(Subjects, SourcesInCAndCppFindTheirFunctionAndScalar) {
   for (std::size_t i = 0; i < close.size(); ++i) ASSERT_EQ(test_bit(bits.intersects, i), i % 3 == 0) << i;
   EXPECT_FALSE(find_lane("in_double/f32/cpu"));
   EXPECT_FALSE(find_lane("by_name/f32/cpu"));
-  // A changed header results in a different build.
+  // A changed header makes a different build.
   write("part.h", "#define LESS(a, b) (a)[0] >= (b)[0]");
   open_one("changed=" + (folder / "both.cpp").string() + ":geo::meets");
   EXPECT_EQ(verdicts(find_lane("changed/f32/cpu")->decide)[0],
             left_of(pairs[0]) == Verdict::disjoint ? Verdict::intersects : Verdict::disjoint);
 }
 
-// Without a device, the twin replays a CUDA source. Fusing a product into a sum changes verdicts.
+// Without a device, a CUDA source runs as its twin. Fusing a product into a sum changes verdicts.
 TEST_F(Subjects, ACudaSourceIsReplayedByItsTwin) {
   const fs::path source = write("mine.cu", R"(
 #include <math.h>
@@ -586,12 +585,12 @@ TEST_F(Subjects, CodeIsKnownByWhatIsCompiledOrRun) {
     const std::string error = error_of([&] { open_recorded(spec); });
     EXPECT_TRUE(names(error, {"changed", spec["subjects"][0]["hash"].get<std::string>()}));
     EXPECT_FALSE(opened(name + "_changed"));
-    open_one(name + "_changed=" + what);  // by a user's request
+    open_one(name + "_changed=" + what);  // as a user may request
     EXPECT_EQ(open_recorded(spec).size(), 1u);
   }
 }
 
-// A cached build of the same files may be used. A build of other files must never be used.
+// A cached build may be used only if it was made from the same files.
 TEST_F(Subjects, WhatIsBuiltInBesideTheSourceIsKnownOrBuiltAnew) {
   const fs::path object = folder / "helper.o", data = folder / "some $data.bin";
   const auto build = [&](bool less) {
@@ -643,7 +642,7 @@ int intersects(const float a[9], const float b[9]) { return data[0] == 'l' ? a[0
                           Case{"tools", assembles, {"-B" + folder.string()}, false},
                           Case{"incbin", reads(0), {}, lists},
                           Case{"incbin_when_linked", reads(0), {"-flto"}, false}};
-  if (lists) {  // if the assembler does not list the files that it reads, Graze finds only the plain spelling
+  if (lists) {  // without a list from the assembler, Graze finds only the plain spelling
     cases.push_back({"incbin_in_parts", reads(1), {}, true});
     cases.push_back({"incbin_in_numbers", reads(2), {}, true});
   }
@@ -679,7 +678,7 @@ TEST_F(Subjects, ACommandThatMakesNoObjectIsNamedWithItsFlags) {
   }
 }
 
-// This compiler also plays an editor: it runs the script `edits` when it compiles.
+// This compiler also acts as an editor: it runs the script `edits` while it compiles.
 TEST_F(Subjects, CodeThatChangesWhileItIsBuiltIsBuiltAgain) {
   const fs::path source = write("edited.c",
                                 "#include \"edited.h\"\nint intersects(const float a[9], const float b[9]) "
@@ -696,7 +695,7 @@ TEST_F(Subjects, CodeThatChangesWhileItIsBuiltIsBuiltAgain) {
   EXPECT_FALSE(is_less(edited));
   EXPECT_EQ(build().file, edited.file);
   EXPECT_FALSE(is_less(build()));
-  // The object built from the new code must not have been cached as that of the old code.
+  // The object built from the new code must not be cached under the old code's name.
   write("edited.h", "#define LESS <\n");
   write("edits",
         "rm edits; mv edited.h old.h; echo '#define LESS >=' > edited.h; cc \"$@\"; status=$?; "
@@ -710,7 +709,7 @@ TEST_F(Subjects, CodeThatChangesWhileItIsBuiltIsBuiltAgain) {
   const std::string error = error_of(build);
   EXPECT_TRUE(names(error, {"cannot compile", "edited.c", "changed during each of 4 builds"})) << error;
   fs::remove(edits);
-  // The time of the build does not count as a change of the code.
+  // The time of the build does not count as a change to the code.
   write("edited.h", "#define LESS < 0 * sizeof __TIME__ __DATE__ +\n");
   write("edits", "sleep 1.1");
   EXPECT_TRUE(is_less(build()));
@@ -718,7 +717,7 @@ TEST_F(Subjects, CodeThatChangesWhileItIsBuiltIsBuiltAgain) {
   unsetenv("CC");
 }
 
-// The assembler searches folders in order, so a new file in an earlier folder makes different code.
+// The assembler searches folders in order, so a new file in an earlier folder changes the code.
 TEST_F(Subjects, AFileThatTheAssemblerNowFindsEarlierIsBuiltIn) {
   const fs::path source = write("searched.c", R"(
 __asm__(".section .rodata\n.global blob\nblob: .incbin \"searched.bin\"\n.previous");
@@ -769,7 +768,7 @@ TEST_F(Subjects, TheCompilersPartsAndScriptsAreInTheHash) {
   EXPECT_TRUE(hashes.insert(hash()).second);
   tool("my_cc", "exec cc -funsigned-char");
   EXPECT_TRUE(hashes.insert(hash()).second);
-  tool("my_cc", "sleep 100000 &\nexec cc");  // Graze does not wait for the process that it leaves behind
+  tool("my_cc", "sleep 100000 &\nexec cc");  // Graze does not wait for the sleeping process
   EXPECT_TRUE(hashes.insert(hash()).second);
   unsetenv("CC");
   EXPECT_EQ(hash(), plain);
@@ -785,7 +784,7 @@ TEST_F(Subjects, FlagsThatMayBringInAnythingAreNotCovered) {
     EXPECT_NE(not_covered({"-O2", flag}), "") << flag;
   EXPECT_EQ(not_covered({"-lm", "-B/x", "-Wl,-s"}), "the libraries that its flags link, what -B/x brings in");
   for (const auto& [how, covered] :
-       {std::pair("rc", true), std::pair("rcT", false)}) {  // a thin archive has only names of files
+       {std::pair("rc", true), std::pair("rcT", false)}) {  // a thin archive contains only file names
     const fs::path archive = folder / (std::string("lib") + how + ".a");
     ASSERT_EQ(std::system(fmt::format("cd {} && echo 'int x;' > x.c && cc -c x.c && ar {} {} x.o", folder.string(), how,
                                       archive.string())
@@ -838,7 +837,7 @@ TEST_F(Subjects, AKeptObjectThatIsNotAsItWasBuiltIsBuiltAgain) {
   EXPECT_TRUE(fs::exists(kept / "inner"));
 }
 
-// Graze knows the code of a command only for a program alone, or for a program with a file as its first argument.
+// Graze knows a command's code only if the command is a single program, or a program with a file as its first argument.
 TEST_F(Subjects, ACommandWhoseCodeIsNotPlainIsNotCovered) {
   const fs::path plain = write("plain.py", "pass"), program = write("plain", "pass");
   const std::string own = program.string();
@@ -897,7 +896,7 @@ TEST_F(Subjects, AProgramThatThePathFindsEarlierMeanwhileIsRefused) {
   setenv("PATH", path.c_str(), 1);
 }
 
-// The hash covers the description. If it did not, shards of two versions of a library would merge.
+// The hash covers the description. Otherwise, shards of two versions of a library would merge.
 TEST_F(Subjects, TheHashOfALibraryIsOfWhatItSaysOfItselfToo) {
   const fs::path code = write("versions.cpp", std::string(R"(
 #include <graze/subject.h>

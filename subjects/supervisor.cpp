@@ -33,17 +33,17 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Time = Clock::time_point;
 
-constexpr auto kLookEvery = std::chrono::milliseconds(100);  // between checks of the processes' usage
+constexpr auto kLookEvery = std::chrono::milliseconds(100);  // how often the processes' usage is checked
 constexpr int kMostWaits = 20;       // a program may wait this many times its limit for a processor
-constexpr int kMostLoads = 3;        // the most loads that may fail for one block
-constexpr double kLoadSeconds = 60;  // to load the code and start a worker
+constexpr int kMostLoads = 3;        // the most failed loads for one block
+constexpr double kLoadSeconds = 60;  // the time to load the code and start a worker
 constexpr std::uint64_t kMostProcesses = 64, kMostDescriptors = 2048;
 
 Time after(double seconds) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-// Tells graze, at most a hundred times a second, that this supervisor works. Graze gives up a silent supervisor.
+// Tells graze, at most a hundred times a second, that this supervisor is alive. Graze gives up on a silent one.
 void tell_alive() {
   static Time next{};
   const Time now = Clock::now();
@@ -85,7 +85,7 @@ class Supervisor {
     _exit(0);
   }
 
-  // Calls poll. If the system call fails, this supervisor cannot supervise: it leaves, and graze starts another.
+  // Calls poll. If that fails, this supervisor cannot do its work: it exits, and graze starts another.
   int wait_for(pollfd* of, nfds_t count, int milliseconds) {
     const int found = poll(of, count, milliseconds);
     if (found < 0 && errno != EINTR) leave();
@@ -98,7 +98,7 @@ class Supervisor {
     wait_for(of, count, static_cast<int>(std::max<long>(0, left)));
   }
 
-  // Waits for graze's next block, and checks the processes' usage meanwhile.   Returns: false if there is none.
+  // Waits for graze's next block, and meanwhile checks the processes' usage.   Returns: false if there is none.
   bool next_block(Block& block) {
     for (;;) {
       pollfd control{kControlFd, POLLIN, 0};
@@ -113,7 +113,7 @@ class Supervisor {
   void answer(std::size_t count) {
     Questions questions(count, of_blocks_, limits_.program);
     Answers answers{0, static_cast<std::uint32_t>(count), {}};
-    int loads = 0;  // since a worker was last ready
+    int loads = 0;  // loads since a worker was last ready
     for (bool first = true; !questions.done(); first = false) {
       if (worker_ < 0 && !(loader_ >= 0 && await_worker())) {
         end_all();
@@ -146,7 +146,7 @@ class Supervisor {
   signed char watch(Questions& questions) {
     double before = processor_seconds(worker_);
     int times = 0;
-    std::optional<Activity> programs;  // at the last time limit
+    std::optional<Activity> programs;  // activity at the previous time limit
     Time until = after(limits_.seconds);
     for (;;) {
       const bool told = wait(until);
@@ -163,8 +163,8 @@ class Supervisor {
         return kCrashed;
       }
       if (Clock::now() < until) continue;
-      // A timeout counts only if the code had the processor time, because load on the machine must not cause verdicts.
-      if (limits_.program && times < kMostWaits) {  // the worker itself only waits for its program
+      // A timeout counts only if the code got the processor time, because load on the machine must not cause verdicts.
+      if (limits_.program && times < kMostWaits) {  // the worker itself only waits for the program
         const Activity now = activity_of_descendants(kMostProcesses);
         const bool had_time = programs && now.seconds - programs->seconds >= 0.9 * limits_.seconds;
         programs = now;
@@ -179,18 +179,17 @@ class Supervisor {
     }
   }
 
-  // Waits for an event, at most until `until`.   Returns: whether the worker claims that it has answered.
+  // Waits for an event until `until` at most.   Returns: whether the worker claims that it has answered.
   bool wait(Time until) {
     pollfd news[] = {{talk_, POLLIN, 0}, {worker_fd_, POLLIN, 0}, {kControlFd, POLLIN, 0}};
     wait_for(news, 3, until);
-    if (news[2].revents) leave();  // nobody waits for the answers
+    if (news[2].revents) leave();  // nobody is waiting for the answers
     if (Clock::now() >= next_look_) {
       tell_alive();
       reap();
       over_limits_ = !within_limits();
     }
-    // After a worker has ended, the next message may already say that a new worker is ready. That message must not be
-    // read here.
+    // Once a worker has ended, the next message may announce a new worker, and must not be read here.
     if (news[1].revents || !(news[0].revents & POLLIN)) return false;
     Answered said{};
     pid_t sender = 0;
@@ -217,8 +216,8 @@ class Supervisor {
     return received;
   }
 
-  // Starts the process that loads the code, and waits until it has.   Returns: whether the code is loaded; if not, why_
-  // has the reason.
+  // Starts the process that loads the code, and waits for it to do so.   Returns: whether the code is loaded; if not,
+  // why_ has the reason.
   bool load(Loaded& loaded) {
     int talk[2];
     const int yes = 1;
@@ -250,7 +249,7 @@ class Supervisor {
 
   [[noreturn]] void become_loader(int talk) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    // Signals to the code's process group must not reach the supervisor or its guardian, even without a namespace.
+    // Even without a namespace, signals to the code's process group must not reach the supervisor or its guardian.
     setsid();
     const int given[] = {kSupervisorPairsFd, words_fd_, talk, kSupervisorCodeFd};
     const int to[] = {kPairsFd, kWordsFd, kTalkFd, kCodeFd};
@@ -259,7 +258,7 @@ class Supervisor {
     for (int i = 0; i < count; ++i) from[i] = fcntl(given[i], F_DUPFD, 16);
     for (int i = 0; i < count; ++i) dup2(from[i], to[i]);
     close_range(static_cast<unsigned>(to[count - 1]) + 1, ~0u, 0);
-    if (limits_.bytes > 0) {  // the code does not need a device's driver
+    if (limits_.bytes > 0) {  // the code needs no device driver
       drop_rights();
       forbid_calls(limits_.system_v);
     }
@@ -267,8 +266,8 @@ class Supervisor {
     _exit(127);
   }
 
-  // Waits for a message of the loader or its workers.   Returns: whether there is one. If not, the loader ended or
-  // stopped, the time is up, or a limit is exceeded. Unless the loader ended, why_ gets the reason for false.
+  // Waits for a message from the loader or its workers.   Returns: false if the loader ended or stopped, the time is
+  // up, or a limit is exceeded. Unless the loader ended, why_ then has the reason.
   bool wait_for_message(Time until) {
     while (Clock::now() < until) {
       pollfd news[] = {{talk_, POLLIN, 0}, {loader_fd_, POLLIN, 0}, {kControlFd, POLLRDHUP, 0}};
@@ -299,7 +298,7 @@ class Supervisor {
       const ssize_t received = receive(&said, sizeof said, sender);
       if (received == 0) return false;  // nobody holds the socket any more
       if (received != sizeof said || said != Says::ready || sender <= 1) continue;
-      const int fd = open_process(sender);  // first, so that no other process gets the id during the checks
+      const int fd = open_process(sender);  // opened first, so that no other process gets the id during the checks
       if (fd >= 0 && is_descendant(sender) && !has_ended(fd)) {
         worker_ = sender;
         worker_fd_ = fd;
@@ -323,7 +322,7 @@ class Supervisor {
 
   void end_all() {
     if (!end_children(-1, tell_alive))
-      _exit(1);  // the code starts processes faster than they can be killed; the namespace ends with this process
+      _exit(1);  // the code starts processes faster than they can be killed, but the namespace ends with this process
     for (int* fd : {&talk_, &loader_fd_, &worker_fd_}) {
       if (*fd >= 0) close(*fd);
       *fd = -1;
@@ -350,8 +349,8 @@ class Supervisor {
     return process_fd < 0 || poll(&ended, 1, 0) > 0;
   }
 
-  // The number of time limits for which the worker may wait: 100 if it waits for a processor, 3 if it waits for a disk,
-  // otherwise 1. Code can fake the wait for a disk by vfork.
+  // How many time limits the worker may wait: 100 if it waits for a processor, 3 for a disk, otherwise 1. By vfork,
+  // code can pretend to wait for a disk.
   int most_times() const {
     const char state = process_state(worker_);
     return state == 'R' ? 100 : state == 'D' ? 3 : 1;

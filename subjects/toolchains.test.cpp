@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of toolchains: their files, their lanes, and contractions in their assembly. Missing toolchains are skipped.
+// Tests toolchains: their files, their lanes, and contractions in their assembly. Skips missing toolchains.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -98,9 +98,8 @@ TEST_F(Toolchains, AreSelectedByNameAndByFile) {
   EXPECT_THROW(selected_toolchains(""), UsageError);
 }
 
-// If every operation is rounded, all compilers and processors give the same verdicts. This test shows that the
-// protocol, the emulator's arithmetic and the sources are right. With contraction or excess precision, some verdicts
-// differ.
+// If every operation is rounded, all compilers and processors must give the same verdicts; so this test also checks the
+// protocol, the emulator's arithmetic and the sources. With contraction or excess precision, some verdicts differ.
 TEST_F(Toolchains, OfPublishedAlgorithmsDifferOnlyWhereTheyDoNotRound) {
   open_published("interval_overlap", "x86-gcc,x86-gcc-v3,x86-clang-v3-off,x87,arm64-gcc,arm64-gcc-off,wasm");
   int compared = 0;
@@ -122,11 +121,10 @@ TEST_F(Toolchains, OfPublishedAlgorithmsDifferOnlyWhereTheyDoNotRound) {
       EXPECT_EQ(verdicts_of(lane->decide, pairs) == ours, toolchain->rounding == Rounding::rounded) << lane->id;
     }
   }
-  EXPECT_GE(compared, 4);  // with GCC, which builds Graze
+  EXPECT_GE(compared, 4);  // at least these, because GCC builds Graze
 }
 
-// If the assembly is edited so that every fused product is rounded first, the program agrees with the strict build on
-// all pairs.
+// If the assembly is edited to round every fused product first, the program agrees with the strict build on all pairs.
 TEST_F(Toolchains, TheAssemblyShowsEveryFusedProduct) {
   open_published("moller_1997", "x86-gcc-v3,arm64-gcc,arm64-clang,x86-clang-v3-fast");
   int checked = 0;
@@ -197,7 +195,7 @@ run = "true"
   EXPECT_TRUE(record({"separating_axes/f32/cpu"}).is_null());
 }
 
-// A campaign with another runner is another campaign.
+// Changing a toolchain's runner changes the record.
 TEST_F(Toolchains, TheirRunnerIsRecorded) {
   const std::string runner = write("runner", "#!/bin/sh\nexec \"$@\"\n");
   fs::permissions(runner, fs::perms::owner_all);
@@ -212,7 +210,8 @@ TEST_F(Toolchains, TheirRunnerIsRecorded) {
   EXPECT_NE(recorded().at("runner"), before["runner"]);
 }
 
-// Foreign code in a toolchain's program fails only on its bad pairs, and its own output is not an answer.
+// Foreign code in a toolchain's program fails only on its bad pairs, and what it prints itself is not taken for an
+// answer.
 TEST_F(Toolchains, ProgramsThatFailLoseOnlyTheirPair) {
   Wanted wanted = parse_subject("fails=" + write("fails.cpp", R"(
 #include <cstdio>

@@ -44,7 +44,7 @@ std::vector<pid_t> children_of(pid_t process) {
   return found;
 }
 
-// The sum of fields that the file gives in KiB.
+// The sum, in bytes, of fields that the file gives in KiB.
 std::uint64_t bytes_in(const fs::path& file, std::initializer_list<std::string_view> names) {
   std::ifstream in(file);
   std::uint64_t kib = 0;
@@ -56,8 +56,7 @@ std::uint64_t bytes_in(const fs::path& file, std::initializer_list<std::string_v
   return kib << 10;
 }
 
-// The folder in /proc that shows a process's memory. If the first thread has ended, the folder of another thread shows
-// it.
+// The folder in /proc that shows a process's memory: another thread's if the first thread has ended.
 fs::path memory_folder(pid_t process) {
   const fs::path folder = "/proc/" + std::to_string(process);
   std::error_code error;
@@ -70,11 +69,11 @@ fs::path memory_folder(pid_t process) {
   return folder;
 }
 
-// Memory that several processes can map, such as MAP_SHARED | MAP_ANONYMOUS: bytes by inode. All such memory remains
-// allocated while any part of it is mapped, even if no page table shows it.
+// Memory that several processes can map, such as MAP_SHARED | MAP_ANONYMOUS: bytes by inode. All of it stays allocated
+// while any part is mapped, even if no page table shows it.
 using Shared = std::map<std::uint64_t, std::uint64_t>;
 
-// The device of the file system that contains shared memory. Files of memfd_create are on the same device.
+// The device number of the file system that holds shared memory, including files of memfd_create.
 dev_t shared_device() {
   struct stat file {};
   const int fd = memfd_create("graze-device", MFD_CLOEXEC);
@@ -83,7 +82,7 @@ dev_t shared_device() {
   return file.st_dev;
 }
 
-// Counts the shared memory that the process maps in `shared`.   Returns: the bytes that were not counted before.
+// Adds the shared memory that the process maps to `shared`.   Returns: the bytes that were not counted before.
 std::uint64_t add_shared(std::ifstream& maps, const fs::path& folder, Shared& shared) {
   static const dev_t device = shared_device();
   std::uint64_t more = 0;
@@ -109,8 +108,8 @@ std::uint64_t add_shared(std::ifstream& maps, const fs::path& folder, Shared& sh
   return more;
 }
 
-// The memory of a process with its page tables, without shared memory. Counting each page of a file fully is fast. If
-// the sum exceeds `most`, counts the process's share of each such page.
+// A process's memory, with page tables but without shared memory. Counts files' pages fully, which is fast. If the sum
+// exceeds `most`, counts only the process's share of each such page.
 std::uint64_t bytes_of(const fs::path& folder, std::uint64_t most) {
   const std::uint64_t whole = bytes_in(folder / "status", {"RssAnon:", "RssFile:", "VmSwap:", "VmPTE:"});
   if (whole <= most) return whole;
@@ -118,7 +117,7 @@ std::uint64_t bytes_of(const fs::path& folder, std::uint64_t most) {
          bytes_in(folder / "status", {"VmPTE:"});
 }
 
-// The number of descriptors in a folder of /proc. A process that hides them counts with the limit.
+// The number of descriptors in a folder of /proc. If a process hides them, assumes the limit.
 std::uint64_t descriptors_in(const fs::path& folder) {
   std::error_code error;
   std::uint64_t count = 0;
@@ -156,7 +155,8 @@ Activity activity_of_descendants(std::uint64_t most) {
 }
 
 Usage usage_of_descendants(const Usage& most) {
-  // Counts the processes first, because reading the memory of a thousand running processes would take too long.
+  // Checks the number of processes first, because reading the memory of a thousand running processes would take too
+  // long.
   const std::vector<pid_t> all = descendants(most.processes);
   Usage usage{all.size(), 0, 0};
   Shared shared;
@@ -165,11 +165,11 @@ Usage usage_of_descendants(const Usage& most) {
     const fs::path folder = memory_folder(process);
     usage.descriptors += descriptors_in(folder / "fd");
     std::ifstream maps(folder / "maps");
-    if (!maps && errno == EACCES) {  // a process that hides its mappings counts with its whole address space
+    if (!maps && errno == EACCES) {  // if a process hides its mappings, its whole address space counts
       usage.bytes += bytes_in(folder / "status", {"VmSize:", "VmSwap:", "VmPTE:"});
     } else {
       usage.bytes += add_shared(maps, folder, shared);
-      // Counts only shares of files' pages if full pages would use more than half of the remaining limit.
+      // Counts only shares of files' pages if full pages would take more than half of the remaining limit.
       usage.bytes += bytes_of(folder, most.bytes > usage.bytes ? (most.bytes - usage.bytes) / 2 : 0);
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The algorithms of the 2012 thesis as subjects. Without DEVICE_MAD the algorithms compute in float. DEVICE_MAD,
-// DEVICE_FUSES and DEVICE_DIVISION select the arithmetic of a device; see docs/results/2012.toml.
+// The algorithms of the 2012 thesis as subjects. DEVICE_MAD, DEVICE_FUSES and DEVICE_DIVISION select a device's
+// arithmetic; see docs/results/2012.toml. Without DEVICE_MAD, the algorithms compute in float.
 #include "subjects/examples/device_2012.h"
 
 #include "core/algorithms/interval_overlap.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The float arithmetic of CUDA devices of 2012, as a scalar type for the published algorithms. Multiply-adds follow the
-// PTX ISA (mad.f32 and fma.f32). Division, square root and the choice of the fused product are models, because no
-// document states their bits.
+// The float arithmetic of CUDA devices in 2012, as a scalar type for the published algorithms. Multiply-adds follow the
+// PTX ISA (mad.f32 and fma.f32). Division, square root and the choice of the fused product are only modelled, because
+// no document defines their bits.
 #pragma once
 
 #include <bit>
@@ -19,7 +19,7 @@ enum class Mad {
 };
 enum class Fuses { left, right };  // which product of a * b + c * d is fused into the sum; the other is rounded
 enum class Division {
-  ieee,        // division and square root with correct rounding; keeps subnormal numbers, which the others flush
+  ieee,        // correctly rounded division and square root; keeps subnormal numbers, which the others flush
   reciprocal,  // x * (1 / y), and 1 / (1 / sqrt(x)), with each step rounded
   two_ulps,    // the rounded result moved by at most 2 ulps, the documented maximum of a division
 };
@@ -38,18 +38,18 @@ inline float truncating_mad(float a, float b, float c) {
   const double product = std::bit_cast<double>(std::bit_cast<std::uint64_t>(double{a} * double{b}) & ~kCut);
   const float in_range = static_cast<float>(product);
   if (double{in_range} == product) return in_range + c;
-  int exponent;  // the product may be beyond the range of float, so fma adds a product of two floats
+  int exponent;  // the product may exceed float's range, so fma gets it as two factors
   const auto mantissa = static_cast<float>(std::frexp(product, &exponent));
   return std::fma(std::ldexp(mantissa, exponent / 2), std::ldexp(1.0f, exponent - exponent / 2), c);
 }
 
-// Moves x by -2 to 2 ulps. A hash of x selects the number of ulps.
+// Moves x by -2 to 2 ulps, as a hash of x selects.
 inline float off_by_ulps(float x) {
   const auto bits = std::bit_cast<std::uint32_t>(x);
   return std::isnormal(x) ? std::bit_cast<float>(bits + (bits * 0x9e3779b9u >> 16) % 5 - 2) : x;
 }
 
-// A number of the device. A product keeps its factors, so that the next sum may fuse them: across statements, as nvcc
+// A number on the device. A product keeps its factors, so that the next sum can fuse them: across statements, as nvcc
 // does, and even if the product has other uses.
 template <Device kDevice>
 class Number {

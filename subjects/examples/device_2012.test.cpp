@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the arithmetic of devices of 2012 with exact arithmetic. Without its peculiarities, the arithmetic must
-// equal that of float.
+// Compares the arithmetic of devices in 2012 with exact arithmetic. Without its peculiarities, it must equal float's.
 #include "subjects/examples/device_2012.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +35,7 @@ float ordinary_float() {
   return std::ldexp(1 + std::ldexp(static_cast<float>(bits() >> 9), -23), int(bits() % 40) - 20);
 }
 
-// Holds the sum of a float and a product of two floats, whatever their exponents.
+// Holds the exact sum of a float and a product of two floats with any exponents.
 using Exact =
     boost::multiprecision::number<boost::multiprecision::cpp_bin_float<1024, boost::multiprecision::digit_base_2>,
                                   boost::multiprecision::et_off>;
@@ -47,7 +46,7 @@ Exact exact_mad(float a, float b, float c) {
   return ldexp(trunc(ldexp(mantissa, FLT_MANT_DIG)), exponent - FLT_MANT_DIG) + Exact(c);
 }
 
-// Whether x is the float nearest to `exact`, or, of two nearest floats, the one with an even mantissa.
+// Whether x is the float nearest to `exact`; of two nearest floats, the one with an even mantissa.
 bool is_rounded(float x, const Exact& exact) {
   const Exact most =
       ldexp(Exact(2) - ldexp(Exact(1), -FLT_MANT_DIG), FLT_MAX_EXP - 1);  // larger numbers round to infinity
@@ -72,7 +71,7 @@ TEST(Device2012, TruncatesProductsAsExactArithmeticDoes) {
   for (int i = 0; i < kTimes; ++i) {
     const float a = any_float(), b = any_float();
     float c = any_float();
-    if (i % 2 == 0) c = std::ldexp(-a * b, int(bits() % 7) - 3);  // of the product's size
+    if (i % 2 == 0) c = std::ldexp(-a * b, int(bits() % 7) - 3);  // of a size like the product's
     if (c == 0 || !std::isfinite(c)) continue;
     beyond_floats += std::abs(a * b) < FLT_MIN || std::isinf(a * b);
     const float found = truncating_mad(a, b, c);

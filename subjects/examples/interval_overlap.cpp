@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An algorithm of the 2012 thesis as a subject. Any compiler can build this subject with any flags, such as for the
-// x87:
+// An algorithm of the 2012 thesis as a subject, for any compiler and flags, for example for the x87:
 //   --subject x87=subjects/examples/interval_overlap.cpp --flags="-I$PWD -mfpmath=387"
 #include "core/algorithms/interval_overlap.h"
 

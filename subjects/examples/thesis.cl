@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two algorithms of the 2012 thesis (Maffina 2012, sections 3.1 and 3.2) in OpenCL C. They have the same operations
-// in the same order as core/algorithms/projected_sat.h and interval_overlap.h. REAL is float or double; see
-// subjects/opencl/runner.cpp. Both are in this file, because a subject in OpenCL C includes no other files.
+// The two algorithms of the 2012 thesis (Maffina 2012, sections 3.1 and 3.2) in OpenCL C. They perform the same
+// operations in the same order as core/algorithms/projected_sat.h and interval_overlap.h. REAL is float or double; see
+// subjects/opencl/runner.cpp. Both are in one file, because a subject in OpenCL C cannot include others.
 //   --subject thesis=subjects/examples/thesis.cl:interval_overlap
 typedef struct {
   REAL3 normal, point;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loads OpenCL 1.2 at run time, so that a build needs only its headers, and finds devices.
+// Finds OpenCL devices. Loads OpenCL 1.2 at run time, so that building needs only its headers.
 #pragma once
 
 #define CL_TARGET_OPENCL_VERSION 120
@@ -32,7 +32,7 @@ std::string text_of(const char* call, Ask ask) {
   check(ask(std::size_t{0}, nullptr, &size), call);
   std::string text(size, '\0');
   check(ask(size, text.data(), nullptr), call);
-  return text.c_str();  // without the zero at the end
+  return text.c_str();  // without the terminating zero
 }
 
 struct Device {
@@ -47,10 +47,10 @@ struct Device {
 };
 
 // All devices of the library that the environment variable GRAZE_OPENCL names, or else of libOpenCL.so.1. The library
-// is a driver loader or a driver.   Throws: Failure when there is no library, or no platform.
+// is a driver loader or a driver.   Throws: Failure if there is no library or no platform.
 std::vector<Device> all_devices();
 
-// The first GPU of the platforms whose names contain the text; without a GPU, the first device of these platforms.
+// The first GPU on the platforms whose names contain the text; without a GPU, the first device on these platforms.
 // Throws: Failure.
 Device chosen_device(const std::string& part_of_name);
 

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // graze-subject-opencl answers for a subject in OpenCL C, as graze/program.h describes. Graze starts this program:
 //   graze-subject-opencl FILE.cl FUNCTION f32|f64|any MODE [PLATFORM]
-// A person can list the devices:
+// To list the devices:
 //   graze-subject-opencl --platforms
 // FILE.cl defines int FUNCTION(const REAL* a, const REAL* b), where each triangle is nine numbers in private memory.
 // The file is compiled once with -DREAL=float -DREAL3=float3 and once with -DREAL=double -DREAL3=double3. The program
-// answers for each type whose compilation succeeds. So a function that takes only float* or double* works too. FILE.cl
-// is in OpenCL C 1.2, and includes no other files.
-// MODE sets the freedom of the compiler:
+// answers for each type for which this succeeds, so a function may also take only float* or only double*. FILE.cl is in
+// OpenCL C 1.2, and includes no other files.
+// MODE sets the compiler's freedom:
 //   default  The compiler contracts as it does by default.
 //   nofma    #pragma OPENCL FP_CONTRACT OFF precedes the source.
 //   mad      -cl-mad-enable
 //   fast     -cl-fast-relaxed-math
 // In all modes but `fast`, division and square root are rounded correctly if the device can do so. The device decides
 // how to treat subnormal numbers.
-// PLATFORM is a part of a platform's name. Without PLATFORM, the first platform with a GPU answers, or else the
-// first platform with a device.
+// PLATFORM is a part of a platform's name. Without it, the first platform with a GPU answers, else the first with any
+// device.
 // The environment variable GRAZE_OPENCL names the library to load: a driver loader, or a driver such as
 // libnvidia-opencl.so.1. The default is libOpenCL.so.1.
 // Exit status: 1 a call failed; 2 wrong use; 3 no library, or no device; 4 the source does not compile.
@@ -58,16 +58,16 @@ struct Subject {
   std::string file, function, mode, source;
 };
 
-// Source text that makes the compiler's messages name this file.
+// Source text that makes the compiler name this file in its messages.
 std::string line_1_of(const std::string& file) {
   std::string name;
   for (const char c : file) name += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
   return "#line 1 \"" + name + "\"\n";
 }
 
-// The subject's source, followed by a kernel that calls the function. The kernel calls the function before it declares
-// it. If the function is missing, the call is an error. If the function has other types, the declaration is an error.
-// In C, a call with pointers to another type gets only a warning.
+// The subject's source, followed by a kernel that calls the function, and then a declaration of it. A missing function
+// makes the call an error; other types make the declaration an error. (In C, a call with pointers to another type only
+// gets a warning.)
 std::string with_kernel(const Subject& subject, bool in_double) {
   std::string text;
   if (in_double) text += "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n";
@@ -109,7 +109,7 @@ std::string first_error(const std::string& log) {
   return first;
 }
 
-// While an object of this class exists, standard error is /dev/null, because compilers also write there.
+// While an object of this class exists, standard error is /dev/null, because compilers write to it.
 class Quiet {
  public:
   Quiet() : kept_(dup(2)) {
@@ -145,9 +145,9 @@ class OnDevice {
 
   bool has(bool in_double) const { return kernels_[in_double].id != nullptr; }
 
-  // Compiles the subject for float or double. Some devices compile a kernel only when it first runs, so this function
-  // runs it once. The first run has no pair, because a call of the subject could fail.
-  // Returns: the first error of the source; empty if there is none.
+  // Compiles the subject for float or double. Some devices compile a kernel only when it first runs, so this runs it
+  // once, without pairs, because a call of the subject could fail. Returns: the first error in the source; empty if
+  // there is none.
   std::string compile(bool in_double) {
     if (in_double && !device_.has_double()) return device_.text(CL_DEVICE_NAME) + " has no double";
     const std::string text = with_kernel(subject_, in_double);
@@ -177,7 +177,7 @@ class OnDevice {
 
   // Returns: the answers for the pairs.   Requires: has(in_double); 0 < count <= kWords.
   std::vector<cl_int> answer(const void* pairs, cl_uint count, bool in_double) const {
-    constexpr cl_int kNone = 2;  // remains in an answer that the kernel does not write
+    constexpr cl_int kNone = 2;  // marks answers that the kernel does not write
     std::vector<cl_int> answers(count, kNone);
     write(pairs_, pairs, 18 * (in_double ? sizeof(double) : sizeof(float)) * count);
     write(answers_, answers.data(), count * sizeof(cl_int));
@@ -194,7 +194,7 @@ class OnDevice {
     std::size_t group_size = 0;  // the same for all runs, because some devices compile for each size
   };
 
-  // Starts the kernel, in whole groups, on the pairs in the device's memory.
+  // Starts the kernel in whole groups on the pairs in the device's memory.
   void launch(cl_uint count, bool in_double) const {
     const Kernel& kernel = kernels_[in_double];
     const std::size_t groups = std::max<std::size_t>(1, (count + kernel.group_size - 1) / kernel.group_size);

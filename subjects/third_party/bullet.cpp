@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bullet's two triangle tests, without margins. Bullet uses either float or double in a build, so scripts/league builds
-// this adapter once with each.
+// Bullet's two triangle tests, without margins. A build of Bullet uses either float or double, so scripts/league builds
+// this adapter once for each.
 #include <BulletCollision/Gimpact/btTriangleShapeEx.h>
 #include <BulletCollision/Gimpact/gim_tri_collision.h>
 #include <graze/subject.h>

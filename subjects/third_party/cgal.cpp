@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CGAL's do_intersect with four kernels: two round, one has exact predicates, and one has exact constructions too.
+// CGAL's do_intersect with four kernels: two round, one has exact predicates, and one also has exact constructions.
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Simple_cartesian.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0
- * GTS's search for pairs of faces that intersect, on a surface of two triangles. */
+ * GTS's search for intersecting pairs of faces, on a surface of two triangles. */
 #include <graze/subject.h>
 #include <gts.h>
 

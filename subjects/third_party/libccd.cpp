@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// libccd's two tests of convex sets, GJK and MPR, on triangles.
+// libccd's two tests for convex sets, GJK and MPR, on triangles.
 #include <ccd/ccd.h>
 #include <graze/subject.h>
 
@@ -29,7 +29,7 @@ int intersects(const double a[9], const double b[9]) {
   CCD_INIT(&ccd);
   ccd.support1 = ccd.support2 = support;
   ccd.center1 = ccd.center2 = center;
-  ccd.max_iterations = 100;  // as in the library's own example; the default does not limit the iteration
+  ccd.max_iterations = 100;  // as in the library's own example; by default, iterations are not limited
   return kTest(a, b, &ccd);
 }
 

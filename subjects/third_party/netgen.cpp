@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Netgen's test of two triangles of a mesh, which may share vertices.
+// Netgen's test for two triangles of a mesh, which may share vertices.
 #include <graze/subject.h>
 #include <mystdlib.h>
 #include <gprim.hpp>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0
  * ODE's collision of two triangle meshes. They intersect if there is a contact. Each mesh has its triangle twice: a
- * mesh of one triangle has no tree, and dCollide reads through the null pointer to it. */
+ * mesh of one triangle has no tree, and dCollide would dereference the null pointer to it. */
 #include <graze/subject.h>
 #include <ode/ode.h>
 

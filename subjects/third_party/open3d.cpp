@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Open3D's test of two triangles, derived from Moeller's code.
+// Open3D's test for two triangles, derived from Moeller's code.
 #include <graze/subject.h>
 #include <open3d/Open3DConfig.h>
 #include <open3d/geometry/IntersectionTest.h>

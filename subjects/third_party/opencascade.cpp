@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenCASCADE's test of two triangles of its surface meshes.
+// OpenCASCADE's test for two triangles of its surface meshes.
 #include <graze/subject.h>
 #include <IntPolyh_Couple.hxx>
 #include <IntPolyh_Edge.hxx>

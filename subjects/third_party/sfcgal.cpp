@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SFCGAL's intersects3D. This function refuses invalid geometries, such as triangles without area. The
-// adapter declines such triangles.
+// SFCGAL's intersects3D. It refuses invalid geometries, such as triangles without area, which the adapter declines.
 #include <SFCGAL/Exception.h>
 #include <SFCGAL/Point.h>
 #include <SFCGAL/Triangle.h>

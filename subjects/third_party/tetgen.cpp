@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// TetGen's test of two triangles with Shewchuk's exact predicates. The test throws an int in a case that it does not
-// handle.
+// TetGen's test for two triangles, with Shewchuk's exact predicates. It throws an int in cases that it does not handle.
 #define TETLIBRARY
 #include <graze/subject.h>
 #include <tetgen.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// VTK's two tests of two triangles.
+// VTK's two tests for two triangles.
 #include <graze/subject.h>
 #include <vtkIntersectionPolyDataFilter.h>
 #include <vtkTriangle.h>

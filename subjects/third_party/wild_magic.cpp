@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wild Magic 5's two tests of two triangles: the separating axis test, and the query that also finds the intersection.
+// Wild Magic 5's two tests for two triangles: the separating axis test, and the query that also finds the intersection.
 #include <Wm5IntrTriangle3Triangle3.h>
 #include <graze/subject.h>
 

@@ -28,8 +28,8 @@ std::string_view trimmed(std::string_view text) {
   return first == text.npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
 }
 
-// The instruction in a line of assembly, without comments; nothing if there is none. Splits operands at commas outside
-// brackets.
+// The instruction in a line of assembly, without comments; nothing if there is none. Commas outside brackets separate
+// operands.
 std::optional<Instruction> instruction_of(std::string_view line) {
   if (line.empty() || (line[0] != '\t' && line[0] != ' ')) return std::nullopt;
   line = trimmed(line);
@@ -84,7 +84,7 @@ std::optional<FusedOperation> on_x86(std::string_view name) {
   return FusedOperation{fused, numbers(name[4] == 'd', name[3] == 'p')};
 }
 
-// The operation of an instruction of ARM64, such as fmadd s0, s1, s2, s3 or fmla v0.4s, v1.4s, v2.4s. ARM64's fmsub
+// The operation of an ARM64 instruction, such as fmadd s0, s1, s2, s3 or fmla v0.4s, v1.4s, v2.4s. ARM64's fmsub
 // negates the product, and its fnmadd both terms.
 std::optional<FusedOperation> on_arm64(const Instruction& i) {
   if (i.operands.empty()) return std::nullopt;
@@ -103,8 +103,8 @@ std::optional<FusedOperation> on_arm64(const Instruction& i) {
   return std::nullopt;
 }
 
-// The operation of an instruction of RISC-V, such as fmadd.s fa0,fa1,fa2,fa3. RISC-V's fnmadd negates both terms, and
-// its fnmsub the product.
+// The operation of a RISC-V instruction, such as fmadd.s fa0,fa1,fa2,fa3. RISC-V's fnmadd negates both terms, and its
+// fnmsub the product.
 std::optional<FusedOperation> on_riscv(std::string_view name) {
   const bool in_double = name.ends_with(".d");
   if (!in_double && !name.ends_with(".s")) return std::nullopt;
@@ -117,8 +117,8 @@ std::optional<FusedOperation> on_riscv(std::string_view name) {
   return std::nullopt;
 }
 
-// The operation of an instruction of Power, such as fmadds 0,1,2,3 or xsmaddadp 0,1,2. Power's nmadd and nmsub negate
-// the rounded results of madd and msub.
+// The operation of a Power instruction, such as fmadds 0,1,2,3 or xsmaddadp 0,1,2. Power's nmadd and nmsub negate the
+// rounded results of madd and msub.
 std::optional<FusedOperation> on_power(const Instruction& i) {
   std::string_view name = i.name;
   const bool is_scalar = take(name, "xs") || take(name, "f"), is_vector = !is_scalar && take(name, "xv");
@@ -134,8 +134,8 @@ std::optional<FusedOperation> on_power(const Instruction& i) {
   return FusedOperation{fused, numbers(in_double, is_vector)};
 }
 
-// The operation of an instruction of AMD's GPUs, such as v_fma_f32, v_fmac_f32, v_mac_f32 or v_fmaak_f32. A
-// v_pk_fma_f32 has two operations. The signs are in the operands, and this function ignores them.
+// The operation of an instruction for AMD's GPUs, such as v_fma_f32, v_fmac_f32, v_mac_f32 or v_fmaak_f32. A
+// v_pk_fma_f32 has two operations. Ignores the signs, which are in the operands.
 std::optional<FusedOperation> on_amd(std::string_view name) {
   if (!take(name, "v_")) return std::nullopt;
   const int times = take(name, "pk_") ? 2 : 1;
@@ -147,7 +147,7 @@ std::optional<FusedOperation> on_amd(std::string_view name) {
   return FusedOperation{Fused::madd, numbers(name.starts_with("f64"), false), times};
 }
 
-// A quotient on AMD's GPUs takes five fused operations, which are no contractions. The last one is v_div_fmas_f32.
+// A division on AMD's GPUs takes five fused operations that are not contractions. The last one is v_div_fmas_f32.
 constexpr int kFusedInDivision = 5;
 std::optional<std::string> division_on_amd(std::string_view name) {
   if (!take(name, "v_div_fmas_")) return std::nullopt;
@@ -170,7 +170,7 @@ int number_of(std::string_view& text) {
   return error == std::errc() ? number : -1;
 }
 
-// The next text in quotes; nothing if there is none. In the text, a backslash precedes each quote and backslash.
+// The next text in quotes; nothing if there is none. A backslash precedes each quote and backslash in it.
 std::optional<std::string> quoted(std::string_view& text) {
   text = trimmed(text);
   if (!take(text, "\"")) return std::nullopt;
@@ -183,7 +183,8 @@ std::optional<std::string> quoted(std::string_view& text) {
   return found;
 }
 
-// Calls visit(text, file, line, instruction) for each line of the assembly. `file` and `line` place it in the source.
+// Calls visit(text, file, line, instruction) for each line of the assembly. `file` and `line` give its place in the
+// source.
 template <class Visit>
 void for_each_line(std::string_view assembly, const fs::path& folder, Visit visit) {
   std::map<int, std::string> files;
@@ -209,8 +210,8 @@ void for_each_line(std::string_view assembly, const fs::path& folder, Visit visi
   }
 }
 
-// The rounded form of a fused operation of x86-64 in AT&T syntax: vfmadd213ss op3, op2, op1. The code uses two other
-// registers, and saves their values below the red zone.
+// The code for a fused x86-64 operation with its product rounded, in AT&T syntax: vfmadd213ss op3, op2, op1. It uses
+// two other registers, and saves their values below the red zone.
 std::optional<std::string> rounded_on_x86(const Instruction& i, Fused fused) {
   if (i.operands.size() != 3) return std::nullopt;
   const std::string &op3 = i.operands[0], &op2 = i.operands[1], &op1 = i.operands[2];
@@ -246,13 +247,14 @@ std::optional<std::string> rounded_on_x86(const Instruction& i, Fused fused) {
   return text + fmt::format("\tvmovups\t-192(%rsp), %ymm{}\n\tvmovups\t-224(%rsp), %ymm{}\n", free[0], free[1]);
 }
 
-// The number of a register of ARM64, such as 31 for v31.4s, s31 and v31.s[0].
+// The number of an ARM64 register, such as 31 for v31.4s, s31 and v31.s[0].
 int register_of(std::string_view operand) {
   operand.remove_prefix(1);
   return number_of(operand);
 }
 
-// The rounded form of a fused operation of ARM64. The code uses another register, and saves its value on the stack.
+// The code for a fused ARM64 operation with its product rounded. It uses another register, and saves its value on the
+// stack.
 std::optional<std::string> rounded_on_arm64(const Instruction& i, Fused fused) {
   const std::string& to = i.operands[0];
   const bool accumulates = i.operands.size() == 3;
@@ -307,7 +309,7 @@ void read_code(std::vector<FusedLine>& plan, const fs::path& folder) {
     if (lines.empty()) {
       std::string why;
       std::istringstream text(plain_file(folder / fused.file, why).value_or(""));
-      lines.emplace_back();  // lines count from 1
+      lines.emplace_back();  // so that lines count from 1
       for (std::string line; std::getline(text, line);) lines.emplace_back(trimmed(line));
     }
     if (fused.line > 0 && static_cast<std::size_t>(fused.line) < lines.size())

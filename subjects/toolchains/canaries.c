@@ -84,7 +84,7 @@ static REAL T(power)(int exponent) {
   return x;
 }
 
-/* The number x, rounded to its type and hidden from the compiler. */
+/* x, rounded to its type and hidden from the compiler. */
 static REAL T(hidden)(REAL x) {
   volatile REAL stored = x;
   return stored;
@@ -135,7 +135,7 @@ static void T(dot)(void) {
 static void T(loop)(void) {
   volatile int count = 128; /* hidden, so that the loop stays a loop */
   const int n = count;
-  /* If there are 64 or fewer partial sums, the two products belong to the same one. */
+  /* With 64 or fewer partial sums, the two products are in the same one. */
   REAL x[128], y[128], sum = 0;
   for (int i = 0; i < 128; ++i) {
     x[i] = i == 0 ? T(factor)(1) : i == 64 ? -T(factor)(2) : T(hidden)(0);
@@ -171,7 +171,7 @@ static void T(sum3)(REAL x, REAL y, REAL z) {
   T(result)(a + b + c);
 }
 
-/* Adds a term to 1 that is lost, unless more digits are kept. */
+/* Adds to 1 a term that is lost unless more digits are kept. */
 static void T(sum)(void) {
   T(begin)("sum");
   T(sum3)(1, T(power)(-DIGITS - 6), -1);

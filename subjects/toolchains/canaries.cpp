@@ -26,13 +26,13 @@ struct Other {
   Rounding rounding;
   std::string words;
   std::vector<Expected> results;
-  bool partly = false;  // some of the results may be rounded as written
+  bool partly = false;  // whether some results may be rounded as written
 };
 
 struct Canary {
   std::string name, code;
-  Rounding least;       // the strictest rounding that permits other results
-  bool across = false;  // whether that rounding must be permitted across statements
+  Rounding least;       // the strictest rounding that permits `others`
+  bool across = false;  // whether `least` must be permitted across statements
   std::vector<Expected> as_written;
   std::vector<Other> others = {};
 };
@@ -40,7 +40,7 @@ struct Canary {
 template <class Real>
 using BitsOf = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
 
-// The canaries for one type. All numbers here are exact: each is a sum of few powers of two. u is half an ulp of 1.
+// The canaries for one type. All numbers here are exact: each is a sum of a few powers of two. u is half an ulp of 1.
 // h is the same as in canaries.c: 4 h^2 is at most u / 4, and half an ulp below 1 is u / 2. So (1 + h)(1 - h) and
 // (1 + 2h)(1 - 2h) round to 1.
 template <class Real>
@@ -59,12 +59,12 @@ std::vector<Canary> canaries() {
              most = std::ldexp(Real{1}, std::numeric_limits<Real>::max_exponent - 1);
   const Real denormal = std::numeric_limits<Real>::denorm_min();
   const Real large = std::ldexp(Real{1}, digits == 24 ? 100 : 1000);
-  // In the canary `fma`, the product a*b is low + u. This product lies in the middle between low and low + 2u, and the
-  // last digit of low is 0.
+  // In the canary `fma`, the product a*b is low + u. It lies halfway between low and low + 2u, and the last digit of
+  // low is 0.
   const Real low = 1 + std::ldexp(Real{1}, -(digits / 2)) + std::ldexp(Real{1}, -(digits - digits / 2));
   // The exact product a*b is 1 - hh, so a*b - 1 is -hh unless the product is rounded.
   const std::vector<Other> not_rounded = {{contracted, "fused", all({-hh})}};
-  // A sequential sum loses the terms between 2^100 and -2^100, and is 47. Partial sums keep some of the other 15 terms.
+  // A sequential sum loses the 15 terms between 2^100 and -2^100, and is 47. Partial sums keep some of them.
   std::vector<Other> regrouped;
   for (int kept = 48; kept <= 62; ++kept) regrouped.push_back({fast, "regrouped", all({static_cast<Real>(kept)})});
   regrouped.push_back({fast, "regrouped", all({0})});
@@ -122,7 +122,7 @@ std::vector<Canary> canaries() {
        all({1, 0, 0}),
        {{fast, "regrouped", all({0, 1, 0})}, {fast, "regrouped", all({0, 0, 1})}}},
       {"order_in_loop", "order of sum += a[i]", fast, false, all({47}), regrouped},
-      // The sums 1 + u and 1 + 3u lie in the middle between two numbers. 1 + u (1 + 2u) lies just above such a middle.
+      // The sums 1 + u and 1 + 3u lie halfway between two numbers. 1 + u (1 + 2u) lies just above halfway.
       {"nearest",
        "a + b",
        excess,
@@ -133,8 +133,7 @@ std::vector<Canary> canaries() {
       {"range_assigned", "t = a*b; t / c", excess, true, all({infinity}), {{excess, "excess range", all({large})}}},
       {"range_called", "(*times)(a, b) / c", excess, true, all({infinity}), {{excess, "excess range", all({large})}}},
       {"range_stored", "a*b stored; a*b / c", fast, false, all({infinity}), {{excess, "excess range", all({large})}}},
-      // The divisor is 41 for float and 49 for double. The rounded reciprocal of the divisor, times the
-      // divisor, rounds to 1 - u.
+      // The divisor is 41 for float and 49 for double. Its rounded reciprocal, times the divisor, rounds to 1 - u.
       {"reciprocal",
        "a/d, b/d, c/d",
        fast,
@@ -189,7 +188,8 @@ bool is_nan(std::uint64_t bits, bool is_float) {
                   : std::isnan(std::bit_cast<double>(bits));
 }
 
-// The results in the lines "NAME f32 HEX HEX …". A name that occurs twice, or with other words, has no results.
+// The results in the lines "NAME f32 HEX HEX …". A name that occurs twice, or in a line of another form, has no
+// results.
 std::map<std::string, std::vector<std::uint64_t>> results_in(std::string_view output) {
   std::map<std::string, std::vector<std::uint64_t>> results;
   std::istringstream lines{std::string(output)};
@@ -210,8 +210,8 @@ std::map<std::string, std::vector<std::uint64_t>> results_in(std::string_view ou
   return results;
 }
 
-// Judges the bits of a result, and sets `rounding` and `found`.   in_excess: whether other canaries show registers of
-// another width than the type's.
+// Judges the bits of a result, and sets `rounding` and `found`.   in_excess: whether other canaries show registers
+// whose width differs from the type's.
 void judge(const Canary& canary, bool is_float, bool in_excess, CanaryResult& result) {
   const auto equal = [&](std::uint64_t found, const Expected& expected) {
     return expected ? found == *expected : is_nan(found, is_float);

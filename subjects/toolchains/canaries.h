@@ -17,18 +17,18 @@ namespace graze::subjects {
 struct CanaryResult {
   std::string name, scalar;          // "statements", "f32"
   std::string code;                  // the computation: "t = a*b; t + c"
-  std::vector<std::uint64_t> bits;   // of the results; empty without an answer
+  std::vector<std::uint64_t> bits;   // bits of the results; empty without an answer
   std::string found;                 // the judgement: "as written", "fused"
   std::optional<Rounding> rounding;  // the strictest rounding that explains the bits; nothing without an answer
 };
 
 // The results of all canaries, for float and then for double.
-// output: what the program of the canaries printed. The output is not trusted: a canary whose line is missing, occurs
-// twice, or does not have the expected number of results, has no answer.
+// output: the canaries' program's output, which is not trusted. A canary has no answer if its line is missing, occurs
+// twice, or does not have the expected number of results.
 std::vector<CanaryResult> judge_canaries(std::string_view output);
 
-// The strictest rounding that explains all canaries; nothing if a canary has no answer. Omits fma(), which belongs to
-// the library.
+// The strictest rounding that explains all canaries; nothing if one has no answer. Omits fma(), which is a library
+// function.
 std::optional<Rounding> measured_rounding(const std::vector<CanaryResult>& results);
 
 // Whether a result is as documented. no_claim: the documentation permits several results.

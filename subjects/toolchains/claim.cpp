@@ -15,8 +15,8 @@
 namespace graze::subjects {
 namespace {
 
-// Flags that permit the compiler to rewrite or approximate operations, or to flush subnormal numbers. The second flag
-// of each row is the opposite of the first.
+// Flags that permit the compiler to rewrite or approximate operations, or to flush subnormal numbers, each with its
+// opposite.
 constexpr std::pair<std::string_view, std::string_view> kFast[] = {
     {"-ffast-math", "-fno-fast-math"},
     {"-funsafe-math-optimizations", "-fno-unsafe-math-optimizations"},
@@ -60,7 +60,7 @@ Flags flags_of(std::string_view command) {
     if (word.starts_with("-mrecip=") || word.starts_with("-fdenormal-fp-math")) flags.fast.insert(word);
     if (word.starts_with("-O") || word == "-fno-fast-math") flags.fast.erase("-Ofast");
     if (word == "-Ofast") flags.fast.insert(word);
-    if (word == "-Ofast" || word == "-ffast-math") flags.contract.clear();  // clang's flag also sets contraction
+    if (word == "-Ofast" || word == "-ffast-math") flags.contract.clear();  // clang's -ffast-math also sets contraction
     if (word.starts_with("-ffp-model=")) {
       flags.fast.erase("-ffast-math");
       if (word == "-ffp-model=fast" || word == "-ffp-model=aggressive") flags.fast.insert("-ffast-math");
@@ -81,7 +81,7 @@ std::optional<Claim> documented_claim(std::string_view command, std::string_view
   const std::map<std::string, std::string> values = values_of(macros);
   const auto has = [&](const char* name) { return values.contains(name); };
   const auto value_of = [&](const char* name) { return has(name) ? values.at(name) : ""; };
-  // These compilers define __GNUC__ or __clang__ too, and have other defaults.
+  // These compilers also define __GNUC__ or __clang__, but have other defaults.
   for (const char* other : {"__INTEL_LLVM_COMPILER", "__INTEL_COMPILER", "__NVCOMPILER", "__ibmxl__", "_MSC_VER"}) {
     if (has(other)) return std::nullopt;
   }

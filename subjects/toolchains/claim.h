@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The promises of the manuals of GCC and clang about the arithmetic of code that a command compiles.
+// What the manuals of GCC and clang promise about the arithmetic of code that a command compiles.
 #pragma once
 
 #include <optional>
@@ -15,11 +15,11 @@ struct Claim {
   // Whether the compiler may fuse, or keep excess precision, across statements and calls.
   bool across_statements = true;
   std::string because = {};  // the reason, in words: "-ffp-contract=off"
-  bool contraction = true;   // false: contraction is excluded, although other rewriting is permitted
+  bool contraction = true;   // false: no contraction, although other rewriting is permitted
 };
 
-// The claim for code that the command compiles. Among opposite flags the last one counts. If the manual allows two
-// readings, the claim is the one that permits more.   macros: the command's output with -dM -E for an empty source.
+// The claim for code that the command compiles. Of opposite flags, the last one counts. If the manual can be read in
+// two ways, the claim is the more permissive one.   macros: the command's output with -dM -E for an empty source.
 // Returns: nothing for compilers other than GCC and clang.
 std::optional<Claim> documented_claim(std::string_view command, std::string_view macros);
 

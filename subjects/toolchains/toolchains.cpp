@@ -35,7 +35,7 @@ constexpr std::string_view kRoundings[] = {"rounded", "contracted", "excess", "f
   throw std::runtime_error(fmt::format("{}: expected {}, found {}", where, expected, found));
 }
 
-// The columns with texts, in the order of records.
+// The text columns, in the order of records.
 constexpr std::pair<const char*, std::string Toolchain::*> kTexts[] = {
     {"name", &Toolchain::name},   {"cxx", &Toolchain::cxx},       {"cc", &Toolchain::cc},    {"run", &Toolchain::run},
     {"needs", &Toolchain::needs}, {"strict", &Toolchain::strict}, {"file", &Toolchain::file}};
@@ -104,7 +104,7 @@ class Reader {
   const std::string& name_;
 };
 
-// The program that a command starts. This is the first word of the command that sets no variable.
+// The program that a command starts: its first word that does not set a variable.
 std::string program_of(std::string_view command) {
   for (std::size_t at = command.find_first_not_of(' '); at != command.npos; at = command.find_first_not_of(' ', at)) {
     const std::size_t end = std::min(command.find(' ', at), command.size());

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
- * Replaces CUDA's headers when a host compiler compiles a CUDA source. It has decorations, vector types and their
- * functions. As in nvcc's pass for the host, __CUDACC__ is defined and __CUDA_ARCH__ is not. Intrinsics such as
- * __fmul_rn are left out, because a compiler that contracts would not keep their rounding. */
+ * Replaces CUDA's headers when a host compiler compiles a CUDA source. Defines decorations, vector types and their
+ * functions. As in nvcc's host pass, __CUDACC__ is defined and __CUDA_ARCH__ is not. Intrinsics such as __fmul_rn are
+ * left out, because a compiler that contracts would not keep their rounding. */
 #pragma once
 
 #include <cfloat>
@@ -41,7 +41,7 @@ GRAZE_VECTORS(int, int)
 GRAZE_VECTORS(unsigned, uint)
 #undef GRAZE_VECTORS
 
-/* Variables that kernels in the same file use. No code calls these kernels. */
+/* Variables for kernels in the same file, which are never called. */
 static const uint3 threadIdx{}, blockIdx{}, blockDim{}, gridDim{};
 
 inline float min(float a, float b) { return std::fmin(a, b); }

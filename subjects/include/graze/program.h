@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0
  * The main function of a program that answers for a subject on another processor, under an emulator, or on another
- * machine. Graze compiles it together with a subject's source for a toolchain. C11 or C++, little-endian.
+ * machine. For a toolchain, Graze compiles it together with a subject's source. C11 or C++, little-endian.
  *
  * Include this after the definition of `const struct graze_subject graze_subject`.
  *
- * On standard output the program first writes a struct graze_hello. Then it reads questions from standard input until
- * the input ends. A question is a struct graze_question, `count` place numbers (uint32_t each), and `count` pairs of 18
- * float or double each. The answer to a question is `count` words of uint64_t: graze_word of each place, in this order.
+ * First, the program writes a struct graze_hello to standard output. Then it reads questions from standard input
+ * until the input ends. A question is a struct graze_question, `count` places (uint32_t each), and `count` pairs (18
+ * float or double each). The answer to a question is `count` words of uint64_t: the graze_word of each place, in order.
  *
  * If GRAZE_PROGRAM_TYPES_ONLY is defined, this header has no main function and needs no subject.
  */
@@ -41,8 +41,8 @@ struct graze_question {
 
 #ifndef GRAZE_PROGRAM_TYPES_ONLY
 
-/* The word of an answer. place: twice the pair's number, plus 1 in the backward pass. Words of answers in shared memory
- * have the same form (subjects/channel.h). */
+/* An answer's word, in the same form as in shared memory (subjects/channel.h). place: twice the pair's number, plus 1
+ * in the backward pass. */
 static uint64_t graze_word(uint64_t nonce, uint32_t place, int answer) {
   const uint64_t content = (uint64_t)place << 2 | (uint64_t)((answer < 0 ? -1 : answer > 0) + 2);
   uint64_t check = (nonce ^ content) * UINT64_C(0x9e3779b97f4a7c15);

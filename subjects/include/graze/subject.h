@@ -3,7 +3,7 @@
  *
  * C11 or C++, without dependencies. Build a shared library and name it: graze fuzz --subject mine=./libmine.so:function
  *
- * The smallest subject is one function and does not need this header:
+ * The smallest subject is a single function, and does not need this header:
  *
  *     int function(const float a[9], const float b[9]);      // for double, name it as :function/f64
  *
@@ -16,8 +16,8 @@
  *
  * Graze asks about each pair twice. The answers must agree, and the function must not change the rounding mode. The
  * triangles are in read-only memory. The function runs in several processes at once, in one thread of each. If it
- * crashes, throws, exits or does not return, that is its verdict on the pair (crashed or timed out). A new process
- * continues with the next pair.
+ * crashes, throws, exits or does not return, the pair's verdict is crashed or timed out, and a new process continues
+ * with the next pair.
  */
 #ifndef GRAZE_SUBJECT_H
 #define GRAZE_SUBJECT_H
@@ -44,15 +44,15 @@ enum {
 struct graze_subject {
   uint32_t abi;           /* GRAZE_SUBJECT_ABI */
   uint32_t outside;       /* the sum of GRAZE_OUTSIDE_… */
-  const char* version;    /* of the code; may be null */
-  const char* source;     /* its origin: library, license, address; may be null */
-  const char* convention; /* the place where the documentation states the convention; may be null */
+  const char* version;    /* the code's version; may be null */
+  const char* source;     /* where it comes from: library, license, address; may be null */
+  const char* convention; /* where the documentation states the convention; may be null */
   /* These functions decide one pair at a time. They may be null. */
   int (*f32)(const float a[9], const float b[9]);
   int (*f64)(const double a[9], const double b[9]);
   /* These functions decide a block of pairs instead. Pair i is pairs[18 * i] to pairs[18 * i + 17], and its answer is
-   * answers[i]. An answer that is not written makes its pair unstable. After a crash Graze asks about the block again,
-   * one pair at a time. They may be null. */
+   * answers[i]. If an answer is not written, its pair is unstable. After a crash, Graze asks about the block again, one
+   * pair at a time. They may be null. */
   void (*block_f32)(const float* pairs, size_t count, signed char* answers);
   void (*block_f64)(const double* pairs, size_t count, signed char* answers);
 };

@@ -46,7 +46,7 @@ const std::vector<Wrong>& all_wrong() {
   return kAll;
 }
 
-// The rounding at line 48 comes first but is harmless. The comparison that decides has a NaN from an overflow.
+// The rounding at line 49 comes first but is harmless. The comparison that decides has a NaN from an overflow.
 TEST(Deciding, IsNotTheFirstWrongComparison) {
   const Pair pair = strata::generate(1, strata::Stratum::exact_contact, 10);
   const Lane* lane = find_lane("interval_overlap/f32/cpu");

@@ -188,11 +188,16 @@ TEST_F(ExperimentsOnSources, CodeSelectedByTheBuildIsNotSettledByOtherBuilds) {
                       {{0.1f, 0.2f, 0.3f}, {0.05f, 0.5f, 0.9f}, {-0.3f, 0.8f, 0.4f}}};
   const Experiment size = found(opened("by_size", kHead + boxes + by_size + end), touching);
   EXPECT_FALSE(size.settled) << name(size.cause) << ' ' << size.evidence;
+  std::ofstream(folder_ / "strict.h") << "#ifdef __FMA__\n#define STRICT\n#endif\n";
+  const std::string by_header = "#ifdef STRICT\n    if (ah <= bl || bh <= al) return false;\n#endif\n";
+  opened("by_header", std::string("#include \"strict.h\"\n") + kHead + boxes + by_header + end);
   opened("by_macro", kHead + boxes + by_macro + end);
   const Lane& fused = *find_lane("by_macro/f32/cpu-fma");
   if (!runs_on_this_cpu(fused)) GTEST_SKIP() << "this processor has no FMA instructions";
   const Experiment macro = found(fused, touching);
   EXPECT_FALSE(macro.settled) << name(macro.cause) << ' ' << macro.evidence;
+  const Experiment header = found(*find_lane("by_header/f32/cpu-fma"), touching);
+  EXPECT_FALSE(header.settled) << name(header.cause) << ' ' << header.evidence;
 }
 
 TEST_F(ExperimentsOnSources, ANumberBesideAnOpenUnderflowIsNotSettled) {

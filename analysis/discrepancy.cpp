@@ -224,8 +224,8 @@ std::string why_not_compared(const Lane& l, const Lane& r) {
              (lane->under ? "it has a policy" : "it has neither a host lane nor a twin in this build");
     if (info_of(lane->variant).arithmetic == Arithmetic::fast)
       return lane->id +
-             " cannot be compared value by value: under fast math the compiler computes something else where values "
-             "are recorded; `graze fuzz` counts its verdicts";
+             " cannot be compared value by value: under fast math, code that records its values computes different "
+             "ones; `graze fuzz` counts its verdicts";
     if (!backends::why_not_on_host(*lane).empty()) return lane->id + " does not run on this processor";
   }
   return "";

@@ -200,7 +200,7 @@ LaneExplanation account_of_policy(const Lane& lane, Verdict verdict, const AnyPa
   } else {
     result.cause = cause_of(zero, pair, truth);
     result.settled = Settled::unknown;
-    result.experiment = fmt::format("without {} it is wrong too, and this is the cause", lane.policy);
+    result.experiment = fmt::format("without {} it is wrong too, for this reason", lane.policy);
   }
   return result;
 }

@@ -209,7 +209,8 @@ class Measuring {
     tell(row);
   }
 
-  // Checks that all executors find the same hits in an array, which every device holds once.
+  // Checks that all executors find the same hits in an array. If each device holds its own copy, hits and triangles are
+  // counted once per copy, so their ratios are compared.
   void expect_hits(const BenchRow& row) const {
     for (const BenchRow& other : bench_.rows) {
       if (other.group != row.group || other.lane != kExact || other.mode != "all") continue;

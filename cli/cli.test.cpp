@@ -296,6 +296,11 @@ TEST_F(Cli, ReproRunsStoredCasesAndNoticesChange) {
                           " > other.pairs; graze repro other.pairs");
   EXPECT_EQ(truth.status, 1);
   EXPECT_TRUE(has(truth.out, {"CHANGED, recorded: truth=declined", "CHANGED, recorded: margin=1"}));
+  expect_done("graze invariants --pairs 300 --strata exact_contact --lanes moller_1997/f32/cpu --out i");
+  expect_done("cp i/cases/order.pairs order.pairs && graze repro order.pairs");
+  const Ran verdict = shell("sed -i 's/says=intersects/says=disjoint/' order.pairs && graze repro order.pairs");
+  EXPECT_EQ(verdict.status, 1);
+  EXPECT_TRUE(has(verdict.out, {"CHANGED, recorded: moller_1997/f32/cpu disjoint"}));
   // Recorded lanes that do not run now count as no difference.
   const std::string algorithm = shell.json("c/summary.json")["signatures"][0]["key"];
   const std::string other = algorithm.find("moller") == std::string::npos ? "moller_*" : "separating_*";

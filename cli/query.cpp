@@ -194,7 +194,7 @@ std::vector<Differing> differing(const std::vector<Run>& runs) {
   return found;
 }
 
-// One row for every two runs; it names the executors if the lanes are the same.
+// One row for each combination of two runs. A row names the executors if its lanes are the same.
 std::string table_of(const std::vector<Differing>& rows) {
   const auto name = [](const Run& run, const Run& other) {
     return run.lane == other.lane ? fmt::format("{} {}", run.lane, run.executor) : run.lane;

@@ -78,6 +78,18 @@ bool compare_truth(const corpus::Entry& entry, const oracle::Truth& t) {
   return changed;
 }
 
+// Prints a recorded verdict, as `graze invariants` writes it, that the lane's verdict now contradicts. Returns whether
+// there is one.
+bool compare_verdict(const corpus::Entry& entry, std::span<const Lane* const> run, std::span<const Verdict> verdicts) {
+  const std::string lane = corpus::text_of(entry, "lanes"), recorded = corpus::text_of(entry, "says");
+  for (std::size_t l = 0; l < run.size(); ++l) {
+    if (recorded.empty() || run[l]->id != lane || name(verdicts[l]) == recorded) continue;
+    fmt::print("  CHANGED, recorded: {} {}\n", lane, printable(recorded));
+    return true;
+  }
+  return false;
+}
+
 int repro(const std::string& name, const LaneOptions& lanes, const std::string& emitted) {
   if (fuzz::is_archive(name)) {
     if (!lanes.globs.empty() || !lanes.subjects.empty() || !lanes.toolchains.empty() || lanes.resubject ||
@@ -116,6 +128,7 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
       changed = true;
     }
     changed = compare_truth(entry, t) || changed;
+    changed = compare_verdict(entry, under_test.lanes, verdicts) || changed;
     if (t.verdict != Verdict::declined) changed = compare_signatures(entry, t, under_test.lanes, counted) || changed;
     wrong = wrong || some_is_wrong(counted, t.verdict);
     std::cout.flush();

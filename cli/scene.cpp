@@ -242,8 +242,8 @@ void add_coordinates_option(CLI::App& command, PairTypes& types, OfBothTypes bot
                 static_cast<int>(PairTypes::both) == 2);
   command
       .add_option("--coordinates", types,
-                  "Coordinates of the pairs. f64: doubles, which lanes in double decide as they are, and lanes in "
-                  "float as float32 stores them; see docs/double.md")
+                  "Coordinates of the pairs. f64: doubles; lanes in double decide them unchanged, lanes in float "
+                  "decide them rounded to float32; see docs/double.md")
       ->transform(both == OfBothTypes::yes ? one_of({"f32", "f64", "both"}, Chosen::place)
                                            : one_of({"f32", "f64"}, Chosen::place))
       ->option_text(both == OfBothTypes::yes ? "f32|f64|both" : "f32|f64")

@@ -361,7 +361,7 @@ TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
   EXPECT_EQ(shell("ls ranks | grep rank-").out, "");
   const Json run = shell.json("ranks/timings.json")["runs"].back();
   EXPECT_EQ(run["ranks"], 4);
-  // All committed pairs are kept. The killed rank loses only its current block, at most one of 256.
+  // All committed pairs are kept. The killed rank loses only its current block, about 1/256 of the pairs.
   EXPECT_LE(run["pairs"], 200'000 / 128);
   expect_same("whole", "ranks");
   const Ran wrong = shell(mpirun + "-n 4 " + fuzz + "--shard 1/2 --out x");

@@ -55,7 +55,7 @@ void print_sufficient(const std::string& scene, double rate) {
     const analysis::Tuned tuned = analysis::tune(spec);
     lanes.push_back(tuned.chosen.empty() ? lane : lane_under(lane, tuned.chosen));
     candidates.push_back({lanes.back().id, lane.scalar, tuned.result, tuned.confirmed, tuned.bound, {}});
-    // A lane without a tolerance is cheaper, so it may suffice even if a tolerance has fewer errors.
+    // The lane without a tolerance is cheaper, so it is a candidate too if its own rate is low enough.
     const double bound = analysis::upper_bound(tuned.zero_confirmed.wrong(), tuned.zero_confirmed.pairs);
     if (tuned.chosen.empty() || bound > rate) continue;
     lanes.push_back(lane);

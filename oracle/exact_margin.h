@@ -19,7 +19,7 @@ struct SquaredMargin {
   int exponent;
 };
 
-// The distance of two disjoint closed hulls: the least distance over all pairs of their vertices, edges and faces.
+// The distance between two disjoint closed hulls: the least distance over all pairs of their vertices, edges and faces.
 // Exact: always.
 SquaredMargin exact_distance(const LargePair& pair, int exponent);
 

@@ -167,7 +167,7 @@ struct Planar {
   static bool inside(const Point<Number>& p, int j, const Simplex<Number>& s, const Sides& sides) {
     if (s.count == 1) return compare(p, *s.vertex[0]) == 0;
     if (s.count == 3) return locate({sides.of[0][j], sides.of[1][j], sides.of[2][j]}).place != Place::outside;
-    // p is in s if it is on the line and between the ends, which their lexicographic order decides.
+    // p is in s if it is on the line and lies between the ends in lexicographic order.
     return sides.of[0][j] == 0 && compare(p, *s.vertex[0]) * compare(p, *s.vertex[1]) <= 0;
   }
 

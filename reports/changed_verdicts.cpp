@@ -115,9 +115,8 @@ std::vector<std::string> changed_sentences(const Json& compare) {
             row.contains(smallest) ? fmt::format(" (smallest: {})", place_of(text_at(row, smallest.c_str()))) : "");
       }
     } else if (row.at("known") == "changed") {
-      text +=
-          fmt::format("at least {} and at most {} {} changed, by their counts; the code of both campaigns is missing",
-                      grouped(least), grouped(most), of);
+      text += fmt::format("at least {} and at most {} {} changed, by their counts; which ones is not known",
+                          grouped(least), grouped(most), of);
     } else {
       text += fmt::format("at most {} {} changed, perhaps none; the GPU engine keeps only counts", grouped(most), of);
     }

@@ -231,7 +231,7 @@ std::string page_shares(const Json& league) {
 
 std::string page_subjects(const Json& league) {
   std::string text =
-      "| subject | version | source | what its documentation states | left out of its contract "
+      "| subject | version | source | what its documentation states | excluded from its contract "
       "|\n|---|---|---|---|---|\n";
   for (const Json& subject : league.at("subjects")) {
     if (!subject.at("foreign")) continue;
@@ -267,12 +267,12 @@ std::string page_failures(const Json& league) {
     const std::string did = says == "crashed"     ? says
                             : says == "timed_out" ? "timed out"
                             : says == "unstable"  ? "is unstable"
-                                                  : "says " + says;
-    text += fmt::format("\n**{}, {}**: `{}` {}; the truth is {}{}, margin {:.4g}{}.{}\n",
-                        failure.at("shape").get<std::string>(), wrong_in_words(failure.at("says")),
-                        failure.at("lane").get<std::string>(), did, failure.at("truth").get<std::string>(), contact,
-                        failure.at("margin").get<double>(), ulps == 0 ? "" : fmt::format(" ({:.4g} ulps)", ulps),
-                        failure.at("minimised") ? "" : " Not minimised.");
+                                                  : "returns " + says;
+    text += fmt::format(
+        "\n**{}, {}**: `{}` {}; the triangles {}{}; margin {:.4g}{}.{}\n", failure.at("shape").get<std::string>(),
+        wrong_in_words(failure.at("says")), failure.at("lane").get<std::string>(), did,
+        failure.at("truth") == "disjoint" ? "are disjoint" : "intersect", contact, failure.at("margin").get<double>(),
+        ulps == 0 ? "" : fmt::format(" ({:.4g} ulps)", ulps), failure.at("minimised") ? "" : " Not minimised.");
     text += fmt::format("\n```sh\n{}\n```\n", failure.at("again").get<std::string>());
     if (!failure.at("file").is_null())
       text += fmt::format("\n![both triangles](league/{})\n", failure.at("file").get<std::string>());
@@ -377,9 +377,9 @@ std::string league_page(const Json& league, const std::string& command) {
 
 Made by `{command}`; do not edit. All lanes decided the same {pairs} pairs, drawn in equal shares from the strata with seed {seed}{doubles}. Lanes with the fewest clearly wrong verdicts come first.
 
-CGAL's exact decision and `core/exact` give the truth of every pair; GMP confirms it where a lane is wrong. Touching triangles intersect, and a degenerate triangle is a segment or a point. If a library's documentation says nothing about such pairs, every difference counts as an error. Columns:
+CGAL's exact decision and `core/exact` determine the truth for every pair; GMP confirms it if a lane is wrong. Touching counts as intersecting, and a degenerate triangle is a segment or a point. If a library's documentation says nothing about such pairs, every difference counts as an error. Columns:
 
-- **general** to **extreme**: false negatives / false positives in each group of strata. "near" has near pairs and exact contacts; "extreme" has needles, extreme coordinates and pairs far from the origin. "of" gives the number of counted pairs if it is smaller: slow lanes got only the first pairs of each stratum, and pairs outside a lane's contract do not count.
+- **general** to **extreme**: false negatives / false positives in each group of strata. "near" has near pairs and exact contacts; "extreme" has needles, extreme coordinates and pairs far from the origin. "of N" gives the number of pairs that were counted, if it is smaller: slow lanes got only the first pairs of each stratum, and pairs outside a lane's contract do not count.
 - **clear**: wrong verdicts, outside "extreme", on proper triangles that are not coplanar and whose margin is at least 2^{exponent} ulps of the largest coordinate. Neither a convention nor rounded input excuses them.
 - **declined**: pairs on which the lane gave no answer. They are not wrong.
 - **crashed**, **timed out**, **unstable**: pairs on which the lane failed, or did not always give the same verdict. They are wrong.
@@ -387,8 +387,8 @@ CGAL's exact decision and `core/exact` give the truth of every pair; GMP confirm
 - **by convention**: verdicts that differ from the truth on pairs that the library's documentation leaves out of its contract. They do not count as errors.
 - **order**: pairs of a sample on which the verdict changes with the order of triangles and vertices (72 orders with the same truth).
 - **invariants**: pairs of the same sample on which the verdict changes under an exact mirror image, permutation of the axes, scaling or translation, or on which a part of a triangle intersects but the whole does not.
-- **flips**: pairs on which the build with contraction gives a different verdict; only for lanes whose source can be built so.
-- **ns a pair**: the median of {repetitions} repetitions on {timed} pairs of `uniform`, in which all lanes take turns. It is processor time in the subject's own process; {machine}, {date}.
+- **flips**: pairs on which the build with contraction gives a different verdict; only for lanes whose source can be built with contraction.
+- **ns a pair**: the median of {repetitions} repetitions on {timed} pairs of `uniform`; the lanes take turns. The time is processor time of the subject's own process; {machine}, {date}.
 - "-": not measured.
 
 {counts}
@@ -399,7 +399,7 @@ Wrong verdicts within the contract (false negatives, false positives, crashed, t
 ## Subjects
 {subjects}
 ## Smallest failures
-These are the simplest pairs found, one for each subject, shape ("clear" as above, but also on strata of "extreme") and kind of wrong verdict. The commands run in the folder in which `scripts/league` ran. `graze repro --emit` turns a pair into a program. CGAL and GMP confirmed each failure, and a fresh process repeated it; {not_repeated} others were not repeated and are left out. In the drawings the second triangle is orange, the contact red, and the line where the two planes meet dashed.
+These are the simplest pairs found, one for each subject, shape ("clear" as above, but including the strata in "extreme") and kind of wrong verdict. Run the commands in the folder in which `scripts/league` ran. `graze repro --emit` turns a pair into a program. CGAL and GMP confirmed each failure, and a fresh process repeated it; {not_repeated} others were not repeated and are left out. In the drawings, the second triangle is orange, the contact is red, and the line in which the planes meet is dashed.
 {failures})",
       fmt::arg("command", command), fmt::arg("pairs", grouped(league.at("pairs"))),
       fmt::arg("doubles",

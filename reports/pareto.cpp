@@ -75,13 +75,13 @@ std::vector<Offer> timed(std::vector<Offer> offers) {
   return offers;
 }
 
-// "12 false negatives, 0 false positives, 3 crashed, timed out or unstable of 100 pairs"
+// "12 false negatives, 0 false positives, 3 crashed, timed out or unstable on 100 pairs"
 std::string errors_in_words(const PolicyErrors& e) {
   std::string words =
       fmt::format("{} false negatives, {} false positives", grouped(e.false_negative), grouped(e.false_positive));
   if (e.failed() > 0) words += fmt::format(", {} crashed, timed out or unstable", grouped(e.failed()));
   if (e.declined > 0) words += fmt::format(", {} declined", grouped(e.declined));
-  return words + fmt::format(" of {} pairs", grouped(e.pairs));
+  return words + fmt::format(" on {} pairs", grouped(e.pairs));
 }
 
 Json offer_json(const Offer& offer) {

@@ -122,7 +122,7 @@ class Findings(unittest.TestCase):
         for page in pages:
             text = page.read_text(encoding="utf-8")
             for part in (
-                "This report was not sent to anyone.",
+                "This report has not been sent to the library's authors.",
                 "**Smallest case**",
                 "**Expected:**",
                 "**Found:**",

@@ -37,7 +37,7 @@ class VerdictsApart(unittest.TestCase):
         self.assertEqual(lines[0], "| 1,000 pairs | `f32/x87` | `f32/cuda-fma` |")
         # cpu and x87 differ on 10 of 1,000 pairs: Wilson's interval is 0.54 % to 1.83 %.
         self.assertEqual(lines[2], "| `f32/cpu` | 100 (54 to 184) | 20 (15 to 27) |")
-        # They differ on 41 pairs; if none of 1,000 differs, the bound is 1 in 261.
+        # other and x87 differ on 41 pairs; other and cuda-fma differ on none of 1,000, so the bound is 1 in 261.
         self.assertEqual(lines[3], "| `f32/other` | 24 (18 to 33) | 0 (over 261) |")
 
     def test_what_is_missing_gets_one_line(self):

@@ -294,7 +294,7 @@ TEST_F(MeshFile, SaysWhereAFanFoldsOver) {
   EXPECT_TRUE(names(read_bodies({write("two.obj", obj)}).notes.at(0), {"two.obj", "1 of 2 faces"}));
 }
 
-// 1000000.01 is 2^-6 from its neighbours in float32, so it moves by 0.01; 0.5 does not move.
+// In float32 the number nearest to 1000000.01 is 1000000, so it moves by 0.01; 0.5 does not move.
 TEST_F(MeshFile, SaysWhatFloat32Rounds) {
   const std::string note = ": float32 rounded 2 of 12 coordinates, by at most 0.011";
   const char* off = "OFF\n4 2 0\n1000000.01 0 0.5\n1 0 0\n0 1000000.01 0\n0 0 1\n3 0 1 2\n3 0 1 3\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hash of a subject's code. It covers the bytes that are compiled or run, but no file names.
+// A hash of a subject's code. It covers the bytes that are compiled or run, but not the source's file name.
 #pragma once
 
 #include <array>

@@ -43,10 +43,14 @@ Json kept_plan(const fs::path& file) {
   return plan.is_object() ? plan : Json();
 }
 
+// Keeps the plan for later runs; without room or permission they compile it again.
 void keep_plan(const Json& plan, const fs::path& file) {
-  const Scratch scratch(cache_folder());
-  write_atomically(scratch.path() / "plan", plan.dump() + '\n');
-  keep_file(scratch.path() / "plan", file);
+  try {
+    const Scratch scratch(cache_folder());
+    write_atomically(scratch.path() / "plan", plan.dump() + '\n');
+    keep_file(scratch.path() / "plan", file);
+  } catch (const std::runtime_error&) {
+  }
 }
 
 }  // namespace

@@ -161,7 +161,7 @@ TEST_F(ContractionPlans, AreRecordedAndNamedWhenABuildIsRefused) {
                                 plan(fused, "f32")["plan"].get<std::string>() + " now"}));
 }
 
-// If the cached plan is damaged, it is read again from the compiler's assembly.
+// If the cached plan is damaged or cannot be replaced, it is read again from the compiler's assembly.
 TEST_F(ContractionPlans, AreKeptBesideTheBuild) {
   if (version_of("x86_64-linux-gnu-g++").empty()) GTEST_SKIP() << "no x86_64-linux-gnu-g++";
   fs::create_directories(folder);
@@ -175,6 +175,11 @@ TEST_F(ContractionPlans, AreKeptBesideTheBuild) {
   ASSERT_TRUE(fs::exists(kept));
   std::ofstream(kept, std::ios::app) << "x";
   EXPECT_EQ(recorded_plan(build, source, "intersects", recipe, {}), plan);
+  fs::rename(kept, folder / "plan");
+  fs::create_directories(kept / "in the way");
+  EXPECT_EQ(recorded_plan(build, source, "intersects", recipe, {}), plan);
+  fs::remove_all(kept);
+  fs::rename(folder / "plan", kept);
   fs::remove(source);
   EXPECT_EQ(recorded_plan(build, source, "intersects", recipe, {}), plan);
   EXPECT_TRUE(recorded_plan("0123456789abcdef", source, "intersects", recipe, {}).is_null());

@@ -31,7 +31,7 @@ class Questions {
   // Call this if the worker ended, or was ended, before it had answered. The next step depends on the subject:
   // - blocks: the next question is about the same pairs, one at a time.
   // - single pairs: the first pair without an answer gets `how`, kCrashed or kTimedOut. If no pair has an answer, the
-  //   next question is about that pair alone, because code that destroys its own answers fails on a later pair.
+  //   next question is about the first pair alone, because code that overwrites its answers may have failed later.
   // - a program: all answers to this question are discarded, and the next question has fewer pairs. If no pair of the
   //   block fails alone afterwards, the failure came from the program's state. Then the pair at which the question
   //   failed gets `how`. A question fails at the first pair without an answer, or at the last pair if the program wrote

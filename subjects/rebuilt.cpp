@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <regex>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -101,6 +102,27 @@ std::string source_as_built(const Lane& lane) {
   }
 }
 
+// Whether a source text, or a file that it includes in quotes, uses something that depends on the build. An included
+// file that is not found in the folder counts as if it did, except if the source is Graze's own.   read: the files that
+// were searched already.
+bool names_build(const std::string& text, const fs::path& folder, bool own, std::set<fs::path>& read) {
+  static const std::regex names(
+      "__(FMA|AVX|SSE|FAST_MATH|FINITE_MATH|OPTIMIZE|ARM_FEATURE|FLT_EVAL)|FLT_EVAL_METHOD|FP_FAST|"
+      "\\b(sizeof|is_same|_Generic|typeid|numeric_limits)");
+  static const std::regex include("#[ \t]*include[ \t]*\"([^\"\n]+)\"");
+  if (std::regex_search(text, names)) return true;
+  for (auto it = std::sregex_iterator(text.begin(), text.end(), include); it != std::sregex_iterator(); ++it) {
+    const fs::path file = (folder / it->str(1)).lexically_normal();
+    if (!read.insert(file).second) continue;
+    try {
+      if (names_build(code_in(file), file.parent_path(), own, read)) return true;
+    } catch (const std::runtime_error&) {  // the file is elsewhere or too large
+      if (!own) return true;
+    }
+  }
+  return false;
+}
+
 // The builds that changed() has made, by lane and change.
 struct Builds {
   std::mutex mutex;
@@ -139,7 +161,8 @@ TunableSource tunable_source(const Lane& lane, const std::string& name) {
 std::unique_ptr<ForeignProcesses> rebuilt(const Lane& lane, const std::string& text, Scalar scalar,
                                           const std::vector<std::string>& more_flags) {
   const Opened& subject = opened_of(lane);
-  // The folder's name depends only on the text, so builds that contain their source's path can be cached too.
+  // The folder's name depends only on the text and the file's path, so builds that contain their source's path can be
+  // cached too.
   const fs::path copy = cache_folder() / fmt::format("changed-{:016x}", fnv1a(text, fnv1a(subject.file.string()))) /
                         subject.file.filename();
   write_atomically(copy, text);
@@ -169,10 +192,11 @@ std::vector<FusedLine> fused_lines_of(const Lane& lane) {
 }
 
 bool selects_by_build(const Lane& lane) {
-  static const std::regex names(
-      "__(FMA|AVX|SSE|FAST_MATH|FINITE_MATH|OPTIMIZE|ARM_FEATURE|FLT_EVAL)|FLT_EVAL_METHOD|FP_FAST|"
-      "\\b(sizeof|is_same|_Generic|typeid|numeric_limits)");
-  return std::regex_search(source_as_built(lane), names);
+  const std::string text = source_as_built(lane);
+  if (text.empty()) return false;
+  const Opened& subject = opened_of(lane);
+  std::set<fs::path> read;
+  return names_build(text, subject.file.parent_path(), subject.kind == "published", read);
 }
 
 bool has_source_as_built(const Lane& lane) { return !source_as_built(lane).empty(); }

@@ -44,7 +44,7 @@ void open(const Wanted& wanted, bool on_device = false);
 
 // A campaign's record of the subjects of these lanes, from which they can be opened again: [{"name", "what", "flags",
 // "timeout", "memory", "hash", "source_hash", "compiler", "environment", "builds", "toolchains", "not_covered"}, …].
-// "toolchains" has the toolchains of these lanes: to_json, with "contraction" (recorded_plan), "build" and "compiler".
+// "toolchains" has these lanes' toolchains: to_json, with "contraction" (recorded_plan), "build", "compiler", "runner".
 // Only sources have "source_hash" (of the file alone) and "compiler". C and C++ sources also have "environment"
 // (compiler_environment) and "builds" (the cached objects). A CUDA source has "compiler", "environment" and "builds" of
 // its host compiler in "host", if one of the lanes runs on the host. "not_covered" describes the parts that the hash

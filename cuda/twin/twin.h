@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The twins replay CUDA lanes on the CPU, bit for bit, with C++ generated from the lanes' PTX. They need neither a GPU
-// nor nvcc. The sign and the payload of a NaN are not replayed; they do not affect verdicts.
+// nor nvcc. The sign and the payload of a NaN are replayed only where a kernel reads its bits.
 #pragma once
 
 #include <cstdint>

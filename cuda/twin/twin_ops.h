@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // PTX operations on the CPU, one function per operation, which generated twins call. Numbers are IEEE 754 binary32 and
-// binary64, rounded to nearest even. The sign and the payload of a NaN are not replayed. Requires: compilation with
+// binary64, rounded to nearest even. A NaN's bits are replayed only in bits_of. Requires: compilation with
 // -ffp-contract=off, and a separate namespace GRAZE_FP for each instruction set. Reference: NVIDIA, PTX ISA 9.0,
 // chapter 9.7.
 #pragma once

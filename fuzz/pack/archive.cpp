@@ -69,7 +69,7 @@ std::vector<PackedFile> files_of(SQLite::Database& database, std::size_t most_by
     if (files.size() == kMostFiles) throw BadArchive(fmt::format("it has more than {} files", kMostFiles));
     if (!files.empty() && files.back().name >= text) throw BadArchive(shown_path(text) + " occurs twice");
     if (!mode.isInteger() || (mode.getInt64() != kFileMode && mode.getInt64() != kProgramMode))
-      throw BadArchive(shown_path(text) + " is not a regular file, but for example a link or a device");
+      throw BadArchive(shown_path(text) + " is not a regular file; it may be a link or a device");
     if (!(data.isBlob() || data.isNull()) || !size.isInteger() || size.getInt64() != data.getBytes())
       throw BadArchive(shown_path(text) + " is compressed, or its size is wrong");
     bytes += static_cast<std::size_t>(data.getBytes());

@@ -62,8 +62,8 @@ std::vector<std::string> with_exact_lane(std::vector<std::string> patterns);
 SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor executor = Executor::automatic,
                            bool require_device = false, const std::vector<LaneLeftOut>& not_opened = {});
 
-// Adds the lanes with policies that the patterns name.   Throws: UsageError if a pattern matches no lane in the table
-// and none in `not_opened`.
+// Adds to the table the lanes with policies that the patterns name.   Throws: UsageError if a pattern matches no
+// lane in the table and none in `not_opened`.
 void expect_each_matches(const std::vector<std::string>& globs, const std::vector<LaneLeftOut>& not_opened = {});
 
 // Adds the exact lanes of doubles that the patterns select.

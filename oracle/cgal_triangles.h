@@ -21,7 +21,7 @@ class CgalTriangles {
   ~CgalTriangles();
 
   // Calls CGAL::do_intersect on two Triangle_3 of the kernel with exact predicates. CGAL requires proper triangles, so
-  // cgal_verdict decides if one is degenerate.   Requires: finite coordinates.   Exact: always.
+  // cgal_verdict decides pairs with a degenerate triangle.   Requires: finite coordinates.   Exact: always.
   bool intersect(std::size_t i, const CgalTriangles& others, std::size_t j) const;
 
  private:

@@ -46,7 +46,7 @@ void vertex_and_face(SquaredMargin& least, const Vector& p, const Vector (&face)
   keep_least(least, Int(height * height), dot(n, n));
 }
 
-// The distance of two edges. It counts only if their common perpendicular meets both. w: v's start minus u's start.
+// The distance between two edges. It counts only if their common perpendicular meets both. w: v's start minus u's.
 void edge_and_edge(SquaredMargin& least, const Vector& w, const Vector& u, const Vector& v) {
   const Vector n = cross(u, v);
   if (is_zero(n)) return;

@@ -35,8 +35,8 @@ SquaredMargin exact_separation(const LargePair& pair, int exponent, int d);
 // floor(log2(|margin|)).   Requires: margin is not zero.   Exact: always.
 int floor_log2(const SquaredMargin& margin);
 
-// |margin|, rounded once to the nearest positive finite double, or 0 if the margin is 0. Nonzero margins of float32 lie
-// in [2^-705, 2^130].
+// |margin|, rounded once to the nearest positive finite double, or 0 if the margin is 0. Nonzero margins of float32
+// pairs lie in [2^-705, 2^130].
 double rounded(const SquaredMargin& margin);
 
 // The truth of a pair with this distance or depth. log2_ulp: log2 of the ulp of the pair's largest coordinate.

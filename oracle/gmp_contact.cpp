@@ -66,7 +66,7 @@ Contact noncoplanar(Workspace<Number>& work, const int (&sa)[3]) {
   if ((tb[0] > 0 && tb[1] > 0 && tb[2] > 0) || (tb[0] < 0 && tb[1] < 0 && tb[2] < 0)) return Contact::none;
 
   // side[i][j]: sign of det[a_i+1 - a_i, b_j - a_i, b_j+1 - b_j]. B's edges 0 and 2 pass through b[0], with
-  // directions u and -v; for edge 1, the three determinants add up to (a_i+1 - a_i) . b_normal.
+  // directions u and -v. The determinants of B's three edges add up to (a_i+1 - a_i) . b_normal, which gives edge 1's.
   int side[3][3];
   for (int i = 0; i < 3; ++i) {
     side[i][0] = work.along_u[i].sign();
@@ -114,8 +114,8 @@ Contact noncoplanar(Workspace<Number>& work, const int (&sa)[3]) {
   return contact_of(std::popcount(found));
 }
 
-// Decides a segment whose line meets the plane of triangle b in one point. There is contact only if that point is in b.
-// Requires: the segment's ends are not both in the plane, and not both strictly on one side of it.
+// Decides a segment and triangle b. The segment's line meets b's plane in one point; there is contact only if that
+// point is in b.   Requires: the segment's ends are not both in the plane, and not both strictly on one side of it.
 template <class Number>
 Contact pierced(Workspace<Number>& work, const Simplex<Number>& segment, const Simplex<Number>& b) {
   subtract(work.w, *segment.vertex[1], *segment.vertex[0]);

@@ -16,13 +16,13 @@ namespace graze::oracle {
 //   a difference                  < 2 * 2^40           = 2^41
 //   a 2x2 minor                   < 2 * 2^41 * 2^41    = 2^83
 //   a 3x3 determinant             < 3 * 2^83 * 2^41    < 2^126
-//   one row a sum of two differences, as in CGAL's line-line test:      < 3 * 2^83 * 2^42 < 2^127
+//   such a determinant with one row of sums of two differences, as in CGAL's line-line test:  < 3 * 2^83 * 2^42 < 2^127
 inline constexpr int kSmallBits = 40;
 
 // The common grid: every coordinate is an integer of at most `bits` bits times 2^exponent.
 struct Grid {
-  int exponent = 0;  // in [-149, 127], for doubles in [-1074, 1023]; 0 when all coordinates are zero
-  int bits = 0;      // in [0, 277], for doubles in [0, 2098]
+  int exponent = 0;  // float32: in [-149, 127]; double: in [-1074, 1023]; 0 when all coordinates are zero
+  int bits = 0;      // float32: in [0, 277]; double: in [0, 2098]
   bool is_small() const { return bits <= kSmallBits; }
 };
 

@@ -89,8 +89,7 @@ TEST(MarginBucket, OfDoublesIsTheExactMarginsBucket) {
   }
 }
 
-// Compares each operation with rationals. The largest errors come close to the authors' proven bounds. Half of the sums
-// cancel.
+// Compares each operation with rationals: the error must not exceed the proven bound. Half of the sums cancel.
 TEST(DoubleDouble, OperationsKeepTheirErrorBounds) {
   std::mt19937_64 random(7);
   const auto value = [&](int spread) {

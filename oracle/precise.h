@@ -39,8 +39,8 @@ Trace<double> run_limited(int algorithm, Scalar scalar, const DoublePair& pair, 
 // Runs the algorithm with a mantissa of `bits` bits and no exponent limits.
 Verdict decide_with_bits(int algorithm, const DoublePair& pair, int bits);
 
-// The least number of bits, at least `least`, for which it and all greater numbers up to kMostBits give this verdict. 0
-// if kMostBits bits do not give it.
+// The least number n of bits, n >= `least`, such that n to kMostBits bits all give this verdict. 0 if kMostBits bits do
+// not give it.
 inline constexpr int kMostBits = 512;
 int bits_needed(int algorithm, const DoublePair& pair, Verdict verdict, int least);
 
@@ -54,7 +54,7 @@ struct Exactly {
 };
 Exactly decide_exactly(int algorithm, const DoublePair& pair);
 
-// Runs the algorithm in exact arithmetic, but with these of the scalar's exponent limits.
+// Runs the algorithm in exact arithmetic, but with the scalar's exponent limits that `limits` selects.
 // Requires: `bits` is the number that decide_exactly returned.
 Verdict decide_exactly_but(int algorithm, Scalar scalar, const DoublePair& pair, int bits, Limits limits);
 

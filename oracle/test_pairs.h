@@ -97,7 +97,7 @@ inline Pair pair_of(const float (&c)[kCoordinates]) {
   return pair;
 }
 
-// The same pair in another of its 72 orders: of the two triangles, and of each triangle's vertices.
+// The same pair in one of its 72 orders: 2 orders of the triangles times 6 orders of each triangle's vertices.
 template <class Real>
 BasicPair<Real> reordered(const BasicPair<Real>& pair, int order) {
   static constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};

@@ -9,7 +9,7 @@
 namespace graze::strata {
 inline namespace GRAZE_FP {
 
-// The ranges of a contact's numbers. Integers are never rounded, neither in double nor in float32, because
+// The ranges of a contact's numbers. Neither double nor float32 ever rounds the integers, because
 // place + 2 * weight * step <= 2^bits, where bits is wide_bits() of the draws.
 template <class D>
 struct Grain {
@@ -87,7 +87,7 @@ GRAZE_INLINE void put_edge(auto& draws, const auto& grain, const Shape& shape, c
   triangle[2] = p + draw_third(draws, grain, shape, side, e, -back, forth);
 }
 
-// A triangle in the plane of s and t that contains p: w0 * (a0 - p) + w1 * (a1 - p) + w2 * (a2 - p) = 0.
+// A triangle that contains p, in the plane of s and t: w0 * (a0 - p) + w1 * (a1 - p) + w2 * (a2 - p) = 0.
 GRAZE_INLINE void put_face(auto& draws, const auto& grain, const Vec& p, const Vec& s, const Vec& t,
                            Vec (&triangle)[3]) {
   const double w0 = draw_weight(draws, grain);

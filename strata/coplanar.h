@@ -128,7 +128,7 @@ GRAZE_HD inline auto coplanar_rounded(auto& draws) {
 template <class D>
 GRAZE_HD auto parallel(D& draws) {
   switch (draws.below(3)) {
-    case 0: {  // tilted planes, parallel before rounding, 1 … 2^-40 of the size apart (doubles: 2^-100)
+    case 0: {  // tilted planes, parallel before rounding; their distance is 1 … 2^-40 (doubles: 2^-100)
       const Chart chart = draw_real_chart(draws);
       Draft draft = draw_real_coplanar(draws, chart);
       const double gap = draws.sign();

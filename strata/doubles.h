@@ -99,7 +99,7 @@ GRAZE_HD inline DoublePair decimal_born(DoubleDraws& draws) {
 }
 
 // B's first vertex is a point on an edge or the face of A, or the point where a line crosses A's plane. In half of the
-// pairs, a vertex of A is the same point, computed in another way, as where two constructions meet in a model.
+// pairs, a vertex of A is the same point computed in another way, as happens in a model when two constructions meet.
 GRAZE_HD inline DoublePair construction_born(DoubleDraws& draws) {
   Draft draft;
   for (Vec& v : draft.a) v = draws.reals();
@@ -137,8 +137,8 @@ GRAZE_HD inline DoublePair construction_born(DoubleDraws& draws) {
   return shuffled(draws, rounded(draws, draft));
 }
 
-// A near contact whose gap is about as large as float32's spacing there. Draws up to 32 contacts and takes the first
-// whose verdict changes in float32, or else the last. Nearly always, one of the verdicts changes.
+// A near contact whose gap is about as large as the spacing of float32 numbers there. Draws up to 32 contacts and takes
+// the first whose verdict changes in float32, or else the last. Nearly always there is such a contact.
 GRAZE_HD inline DoublePair stored(DoubleDraws& draws) {
   DoublePair pair{};
 #ifndef __CUDA_ARCH__

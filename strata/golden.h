@@ -15,7 +15,7 @@ inline constexpr std::uint64_t kGoldenPairs = 10'000;
 
 inline constexpr std::uint64_t kHashStart = fnv1a("");
 
-// FNV-1a over the coordinates' bytes, least significant first on a little-endian machine; `hash` chains calls.
+// FNV-1a over the coordinates' bytes, least significant first on a little-endian machine. hash: the previous result.
 template <class Real>
 std::uint64_t hash_bits(const BasicPair<Real>& pair, std::uint64_t hash = kHashStart) {
   return fnv1a({reinterpret_cast<const char*>(&pair), sizeof pair}, hash);

@@ -29,7 +29,7 @@ inline constexpr GroupInfo kGroups[] = {
     {Group::mesh, "mesh", "pairs of a mesh's triangles whose boxes overlap"},
 };
 
-// The group of the campaign source with this name, which is a stratum or belongs to a mesh. Nothing if this build does
+// The group of the campaign source with this name: a stratum, or a source of a mesh's pairs. Nothing if this build does
 // not know the name.
 constexpr std::optional<Group> group_of_name(std::string_view id) {
   const std::string_view stratum = stratum_in_doubles(id).value_or(id);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle within a larger one, or just outside it. Both lie on a chart whose grid gives the larger triangle's
-// barycentric coordinates. So with integers, containment and contact are exact at every ratio of sizes. If the smaller
-// triangle has vertices on both sides of the chart, it pierces the larger one's face.
+// A triangle within a larger one, or just outside it. Both are drawn on a chart whose grid gives the larger triangle's
+// barycentric coordinates. So with integers, containment and contact are exact at every ratio of sizes. In some pairs,
+// the smaller triangle's vertices are then moved to both sides of the larger one's plane, so that it can pierce it.
 #pragma once
 
 #include "strata/coplanar.h"
@@ -9,8 +9,8 @@
 namespace graze::strata {
 inline namespace GRAZE_FP {
 
-// A triangle within the triangle (0, 0), (size, 0), (0, size), or, if `turned`, within that triangle after half a turn,
-// where i + j reaches 2 * size. Each vertex is within size / 4 of its own corner, so the three are never collinear.
+// A triangle within the triangle (0, 0), (size, 0), (0, size). If `turned`, it is within the triangle (size, size),
+// (0, size), (size, 0) instead. Each vertex is within size / 4 of its own corner, so the three are never collinear.
 GRAZE_HD inline void put_inner(auto& draws, int size, bool turned, GridPoint (&inner)[3]) {
   const int inset = draws.coin() ? size / 4 : size >> draws.between(2, 20);
   for (int m = 0; m < 3; ++m) {

@@ -12,7 +12,7 @@ GRAZE_HD inline auto far_from_origin(auto& draws) {
   Contact contact = draw_contact(draws, draw_touch(draws), real_grain(draws));
   const Push push = draw_push(draws);
   move(contact.draft.b, contact.away * push.gap);
-  // The offset is log-uniform in 2^7 … 2^23, which is 1.3e2 … 8.4e6; for doubles in 2^7 … 2^51.
+  // The offset is log-uniform in 2^7 … 2^23, which is 1.3e2 … 8.4e6 (doubles: 2^7 … 2^51).
   const Vec direction = normalised(draws.reals());
   const double fraction = 1 + draws.positive();
   const Vec offset = direction * (fraction * power_of_two(draws.between(7, draws.kOffset)));

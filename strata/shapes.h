@@ -95,8 +95,8 @@ GRAZE_HD inline Fold draw_fold(auto& draws) {
   return fold;
 }
 
-// A point near p in A's plane, then lifted. If it is on the far side of the common edge, the triangles lie side by
-// side; on A's side, they are folded onto each other.
+// A point near p in A's plane, lifted by ±fold.lift. If it is on the far side of the common edge, the triangles lie
+// side by side; on A's side, they are folded onto each other.
 GRAZE_HD inline Vec draw_free_vertex(auto& draws, const Fold& fold) {
   const double i = fold.exact ? draws.integer(8) : draws.real();
   const double j = fold.exact ? draws.integer(8) : draws.real();

@@ -13,7 +13,7 @@
 
 namespace graze::fuzz {
 
-// The number of cases kept for each signature: those with the smallest keys, in whatever order cases are found.
+// For each signature, this many cases are kept: those with the smallest keys, in whatever order they are found.
 inline constexpr std::size_t kKeptCases = 4;
 
 // Identifies a pair: its source in the campaign, and its index in that source.

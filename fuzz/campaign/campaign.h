@@ -33,7 +33,7 @@ struct Campaign {
   Shard shard;                    // the part of the campaign to run
   Json spec;                      // identifies the campaign; see campaign_spec
   Json build;
-  // If set, takes the next batch from a pool that several processes share; nothing once the pool is empty.
+  // If set, returns the next batch from a pool that several processes share, or nothing once the pool is empty.
   std::function<std::optional<PairRange>()> take;
 };
 

@@ -43,7 +43,7 @@ TEST_F(CampaignTest, SameBytesForOneThreadAndMany) {
 }
 
 // A lane's code changes between two campaigns on the same pairs. Only the strata on which a verdict changed are
-// reported as changed. The bounds hold for any number of threads and any judge.
+// reported as changed. The bounds on the number of changes hold for any number of threads and any judge.
 TEST_F(CampaignTest, ChangedVerdictsShowInDigests) {
   const SelectedLanes one = select_lanes({"moller_1997/f32/cpu", "exact/f32/cpu"}),
                       other = select_lanes({"guigue_devillers_2003/f32/cpu"});
@@ -154,7 +154,7 @@ TEST_F(CampaignTest, CountsExtremesWhereAStratumVariesThem) {
   }
 }
 
-// Deciding each pair again finds, in each margin bucket, the same number of verdicts that differ from the cpu lane's.
+// Decides each pair again, and counts in each margin bucket the verdicts that differ from the cpu lane's.
 TEST_F(CampaignTest, CountsDifferencesFromCpuByMargin) {
   Campaign c = campaign("differ", 2);
   c.sources = strata::stratum_sources(c.seed, 4000, {"near_edge_edge", "thesis"});

@@ -30,7 +30,7 @@ strata::SceneSources sources_of(const NamedScene& scene, std::uint64_t seed, std
 strata::SceneSources recorded_sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
                                          const std::vector<std::string>& names);
 
-// Returns a campaign's record under "scene": {"file", "name", "pairs" requested, "text", "left_out": {stratum: why}}.
+// The value of "scene" in a campaign's spec: {"file", "name", "pairs" (requested), "text", "left_out": {stratum: why}}.
 nlohmann::ordered_json scene_spec(const NamedScene& scene, std::uint64_t pairs, const strata::SceneSources& drawn);
 
 // The inverse of scene_spec.   Throws: std::runtime_error; nlohmann's exceptions if keys or types are wrong.

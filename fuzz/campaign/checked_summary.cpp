@@ -41,7 +41,7 @@ std::uint64_t count(const Json& row, const char* field) {
   return value.get<std::uint64_t>();
 }
 
-// Checks rows {"pairs", "wrong": {lane: count}, "differs_from_cpu": {lane: count}} that split the stratum's pairs.
+// Checks that rows {"pairs", "wrong": {lane: count}, "differs_from_cpu": {lane: count}} add up to the stratum's counts.
 void expect_split(const std::string& where, const Json& rows, const Json& stratum) {
   std::uint64_t pairs = 0;
   std::map<std::string, std::uint64_t> wrong, differ;

@@ -176,7 +176,7 @@ class BlockJudge {
       changed_by_storing_[w] = (changed_by_storing_[w] ^ truth_[w]) | none_[w];
   }
 
-  // Finds the margin buckets of pairs of doubles whose margin is also wide in float32; the other buckets remain open.
+  // Finds the margin buckets of pairs of doubles where the margin in float32 determines them; the others remain open.
   void find_wide_margins(std::span<const Pair> stored) {
     std::vector<Pair> unchanged;
     std::vector<std::size_t> places;

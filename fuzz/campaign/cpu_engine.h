@@ -27,7 +27,7 @@ class PairJudge {
   struct Found {
     Verdict truth;
     Bucket bucket;
-    std::vector<Verdict> verdicts;              // by lane; the truth where a lane's convention excuses it
+    std::vector<Verdict> verdicts;              // by lane; the truth if the lane's convention excuses the verdict
     std::vector<analysis::Signature> failures;  // one for each subject that is wrong
   };
   // Adds the pair's counts to `total`. All pairs have the source's coordinate type.   Throws: OracleMismatch.

@@ -136,7 +136,7 @@ TEST_F(DeviceTest, DiscrepanciesOfDoublesAreThoseOfTheHost) {
   EXPECT_GT(verdicts, 100u);
 }
 
-// A host lane computes the same values as cuda-nofma, and count_different_runs finds a lane that computes others.
+// A host lane computes the same values as cuda-nofma, and count_different_runs finds a lane whose values differ.
 TEST_F(DeviceTest, RunsThatDifferAreFound) {
   const strata::PairSource source = strata::stratum_sources(8, 50'000, {"thesis"})[0];
   const auto lane = [](const char* id) -> const Lane& { return *find_lane(id); };
@@ -351,7 +351,7 @@ TEST_F(DeviceTest, InterruptionsInTheMiddleOfAStratumChangeNothing) {
   expect_same_bytes("twins", "parts");
 }
 
-// Tests seven blocks, more pairs than memory holds at once, and compares them with runs that end at other pairs.
+// Judges seven blocks, more pairs than memory holds at once, and compares the bytes with those of three shorter runs.
 TEST_F(DeviceTest, ManyBlocksCountAsManyRuns) {
   constexpr std::uint64_t kPairs = (std::uint64_t{7} << 22) - 12'345;
   for (const char* stratum : {"near_edge_edge", "extreme_scale"}) {

@@ -28,7 +28,7 @@ class CampaignOfDoubles : public CampaignFiles {
   SelectedLanes lanes_ = select_lanes({}, Executor::twin);
 };
 
-// The summary's margins are the same as GMP's, although float32 decides most wide margins.
+// The summary's margins are the same as GMP's, although the margins in float32 determine most large ones.
 TEST_F(CampaignOfDoubles, MarginsAreTheOracles) {
   const Campaign c = campaign("margins", 28 * 200);
   const Json strata = run(c)["strata"];
@@ -160,7 +160,7 @@ TEST_F(CampaignOfDoubles, RecordsAreReadBackAndChecked) {
   EXPECT_TRUE(std::equal(coordinates(one), coordinates(one) + kCoordinates, coordinates(other)));
   const std::vector<std::string> words = command_words(summary["spec"], {}, "o", summary);
   EXPECT_NE(std::find(words.begin(), words.end(), "--coordinates"), words.end());
-  // After one bit of a case is changed, it is no longer the pair that the stratum draws.
+  // After one hex digit of a case is changed, it is no longer the pair that the stratum draws.
   const std::filesystem::path file = directory / summary["signatures"][0]["case"].get<std::string>();
   std::string text = read_whole(file);
   const std::size_t at = text.find("p", text.find("0x1.")) - 1;

@@ -14,7 +14,7 @@ inline constexpr int kPassesTimed = 9;
 
 // Times the host lanes. Device lanes and their twins are not timed, and neither is foreign code, because its time would
 // include its processes. In each of the kPassesTimed passes, the lanes run one after another, each over all pairs. So
-// other load on the machine affects all lanes, and no lane benefits from a trained branch predictor.
+// other load on the machine affects all lanes alike, and no lane benefits from a trained branch predictor.
 // Returns: {"passes", "lanes": {lane: {source: {"pairs", "low", "middle", "high"}}}}, with the quartiles of the passes.
 Json measure_costs(const Campaign& campaign);
 

@@ -45,7 +45,7 @@ std::filesystem::path case_file(const std::filesystem::path& directory, const Js
 std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& spec, const Json& row);
 
 // Whether the stratum draws this pair from the recorded seed and index. Also true where this cannot be checked: for
-// scenes, meshes and hunts, and for a case without these fields.
+// scenes, meshes and hunts, and for a case without the field `stratum`.
 bool is_drawn(const corpus::Entry& entry);
 
 // Whether the file's text is `fresh`, the text that a campaign would write, with or without the minimiser's results.

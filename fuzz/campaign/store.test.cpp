@@ -52,8 +52,8 @@ class StoreTest : public testing::Test {
     store.commit(range, judge(c, range.source, range.pairs, [&](std::size_t i) { return range.first + i; }));
   }
 
-  // A campaign of three sources with 400 pairs each, in seven rows: (0, 300), (300, 80), (380, 20) of two sources, and
-  // (0, 400) of the third.
+  // A campaign of three sources with 400 pairs each, in seven rows (first, pairs): (0, 300), (300, 80) and (380, 20)
+  // for each of two sources, and (0, 400) for the third.
   Campaign in_seven_rows(const std::string& name) const {
     Campaign c = campaign(name);
     Store store(store_spec(c));
@@ -393,7 +393,7 @@ TEST_F(StoreTest, ResultsOfForeignLanesSayMore) {
   }
 }
 
-// Rows of equal batches merge in the way that digits carry in a binary counter.
+// Rows of equal batches merge like digits that carry in a binary counter.
 TEST_F(StoreTest, RowsMergeAndResultsStayTheSame) {
   const Campaign parts = campaign("parts"), whole = campaign("whole");
   Json results;

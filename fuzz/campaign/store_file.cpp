@@ -151,7 +151,7 @@ std::string first_difference(const Json& expected, const Json& found) {
   const auto value = [](const Json& of, const std::string& place) {
     return of.contains(place) ? of[place].dump(-1, ' ', false, Json::error_handler_t::replace) : "none";
   };
-  for (const bool empty : {false, true}) {  // flatten() makes an empty list null; the other side shows more
+  for (const bool empty : {false, true}) {  // flatten() turns an empty list into null; such places come last
     for (const Json& side : {ours, theirs}) {
       for (const auto& [place, one] : side.items()) {
         if (one.is_null() != empty || (ours.contains(place) && theirs.contains(place) && ours[place] == theirs[place]))
@@ -165,7 +165,7 @@ std::string first_difference(const Json& expected, const Json& found) {
 
 namespace {
 
-// Throws: UsageError if the text belongs to another campaign. Its checksum is correct.
+// Requires: the text's checksum is correct.   Throws: UsageError if the text belongs to another campaign; Damaged.
 void compare(const StoreSpec& spec, const std::string& text) {
   if (text == text_of(spec)) return;
   const Json found = parse_shallow(text);
@@ -245,7 +245,7 @@ std::int64_t insert(SQLite::Database& database, std::uint64_t campaign, const Pa
   return database.getLastInsertRowid();
 }
 
-// Whether the database has not changed since a run ended and sealed it. Then no log belongs to it.
+// Whether the database is unchanged since a run ended and sealed it. If so, no log belongs to it.
 bool is_closed(const fs::path& database) {
   try {
     const Json status = read_status(database.parent_path());
@@ -326,8 +326,8 @@ struct KeptRow {
   std::string bytes;
 };
 
-// Returns the rows whose checksums are correct. Reads from both ends, because a damaged B-tree can be read up to the
-// damage from each side.
+// Returns the rows whose checksums are correct. Reads from both ends, because a damaged B-tree can be read from each
+// end up to the damage.
 std::vector<KeptRow> rows_that_check(SQLite::Database& database, const StoreSpec& spec, std::uint64_t campaign,
                                      std::size_t& seen) {
   std::vector<KeptRow> kept;

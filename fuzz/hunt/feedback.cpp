@@ -27,7 +27,7 @@ std::uint16_t feature(Kind kind, Values... values) {
   return static_cast<std::uint16_t>(hash ^ hash >> 16 ^ hash >> 32 ^ hash >> 48);
 }
 
-// The default policy, which also records the ratio of each value to its error bound.
+// Compares like the default policy, and also records the ratio of each value to its error bound.
 template <class Real>
 struct Meter {
   using Number = WithErrorBound<Real>;

@@ -3,8 +3,8 @@
 // had. A pair's features are numbers for:
 //   failures     how each subject's lanes are wrong together, with the contact and the shape
 //   closeness    margin bucket and shape
-//   sites        for each value or comparison passed to the policy: log2 of its distance from zero divided by its error
-//                bound (core/lanes/with_error_bound.h), in float32 and in float64
+//   sites        for each value or comparison passed to the policy: log2 of the ratio of its size to its error bound
+//                (core/lanes/with_error_bound.h), in float32 and in float64
 //   parting      for a wrong algorithm: the line of the first comparison with different outcomes in float32 and float64
 //   contractions for a cuda-fma lane whose verdict differs from the same source without contraction: each contraction
 //                site that changes the verdict when only this site is not fused
@@ -17,7 +17,7 @@
 
 namespace graze::fuzz {
 
-// A feature is the index of an extra counter of libFuzzer; a few features share an index.
+// A feature's number is the index of one of libFuzzer's extra counters; a few features share a number.
 inline constexpr std::size_t kFeatures = std::size_t{1} << 16;
 using Features = std::vector<std::uint16_t>;
 

@@ -193,7 +193,7 @@ class Hunter {
     fs::remove(result_file);
   }
 
-  // Examines one pair for each way to be wrong, whatever the margin.
+  // Examines one pair for each signature that is new when margins are ignored.
   void find_kinds_of(const RoundResult& result, KeptRound& kept) const {
     struct New {
       analysis::Signature signature;

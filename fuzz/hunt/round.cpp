@@ -195,7 +195,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   return guarded([&] { return current->next(data, size, nullptr, seed); });
 }
 
-// Returns 0 to skip the crossing. So one mutation in fourteen is a crossing, like every other kind.
+// Skips most crossings by returning 0, so that crossings are one mutation in fourteen, like every other kind.
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* data, std::size_t size, const std::uint8_t* other,
                                                  std::size_t other_size, std::uint8_t* out, std::size_t,
                                                  unsigned seed) {

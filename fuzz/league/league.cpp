@@ -43,7 +43,7 @@ struct Counting {
   LeagueRow row;
   const Lane* fused;  // its cpu-fma counterpart; null for none
   const DecideBlock* decide;
-  std::uint64_t of_source;  // the lane gets at most this many of each source's first pairs
+  std::uint64_t of_source;  // the lane gets at most this many pairs of each source, from the first on
   Smallest smallest;
 
   // Confirms with GMP the truth of a pair on which the lane is wrong.

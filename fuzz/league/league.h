@@ -56,7 +56,7 @@ struct LeagueFailure {
 struct LeagueRow {
   const Lane* lane;
   std::array<LeagueCounts, kLeagueGroupCount> groups;
-  std::uint64_t order_dependent = 0, order_sample = 0;  // of pairs within its contract, in 72 orders
+  std::uint64_t order_dependent = 0, order_sample = 0;  // order_sample: pairs within its contract, in 72 orders
   std::uint64_t breaks_invariant =
       0;  // of the same pairs: those that break one of the other invariants in analysis::kInvariants
   std::optional<std::uint64_t> flips;  // verdicts that `cpu-fma` changes; nothing if no `cpu-fma` lane runs here

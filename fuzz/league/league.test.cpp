@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests a league of planted subjects. The test counts every number of the league again, using only the oracle.
+// Tests a league of planted subjects. The test recomputes every number of the league, using only the oracle.
 #include "fuzz/league/league.h"
 
 #include <gtest/gtest.h>

@@ -38,7 +38,7 @@ class Smallest {
 
 // Minimises the first candidate of each subject, shape and verdict. If another subject's pair is simpler and this lane
 // fails on it in the same way, that pair is used instead.
-// candidates: in the order of the lanes.   not_repeated: receives the number of other failures.
+// candidates: in the order of the lanes.   not_repeated: receives the number of failures that are left out.
 // Returns: the failures that a fresh process repeats.   Throws: OracleMismatch.
 std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candidates, std::uint64_t& not_repeated);
 

@@ -14,7 +14,7 @@ Verdict opposite_of_truth(const Pair& pair) {
   return relation_of(pair).verdict == Verdict::disjoint ? Verdict::intersects : Verdict::disjoint;
 }
 
-// Experiments are expensive. If the search ends at once, it makes only one.
+// Experiments are expensive. A search that ends at once must make only one.
 TEST(MinimiseForeignCode, FindsTheFirstCauseOnce) {
   static analysis::Stranger code(opposite_of_truth);
   static const AlgorithmInfo info{"always_wrong", "test", "", "", "", false};

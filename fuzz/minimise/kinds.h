@@ -20,7 +20,7 @@ namespace graze::fuzz {
 struct LaneReason {
   const Lane* lane;
   std::string cause;
-  std::string line;  // "core/algorithms/moller_1997.h:117"; empty if no comparison is to blame or known
+  std::string line;  // "core/algorithms/moller_1997.h:117"; empty if no comparison is to blame, or it is unknown
   bool settled;
   bool audited;  // the cause was checked: the computation is known, or experiments on foreign code decided
 };

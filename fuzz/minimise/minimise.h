@@ -47,9 +47,9 @@ analysis::Signature signature_of(const Failure& failure, const AnyPair& pair);
 
 // Why a failure happens. Its lanes may be wrong for different reasons; only the reason of the first wrong lane in table
 // order counts. A pair fails for the same reason if the cause is the same. If no result of the lane's run overflows or
-// underflows, none may on the minimised pair. Otherwise a rounding error would shrink to coordinates around 1e-30. For
-// foreign code the first pair's cause may be a guess (rounding or logic, not settled). Then the cause on a simpler pair
-// replaces the guess if it is settled, or if it is the vertex order and the guess was rounding.
+// underflows, none may do so on the minimised pair; otherwise the pair would shrink to coordinates around 1e-30. For
+// foreign code, the first pair's cause may be a guess (rounding or logic, not settled). Then the cause on a simpler
+// pair replaces the guess if it is settled, or if it is the vertex order and the guess was rounding.
 struct Reason {
   analysis::Cause cause;
   bool in_range;  // no result of the lane's source, run without contraction, leaves the exponents' range
@@ -74,7 +74,7 @@ bool can_shrink(const Failure& failure);
 
 struct Minimised {
   AnyPair pair;                  // fails alike, for the same reason
-  bool one_minimal = false;      // no single move makes it simpler and keeps both; false: the limit was reached
+  bool one_minimal = false;      // no single move makes it simpler and keeps failure and reason; false: not proven
   std::size_t single_moves = 0;  // if one_minimal: how many moves from the pair were tried and failed
   std::size_t moved = 0;         // pairs that moves tried; each search for a cause adds kMovedPerCause
   Reason reason;                 // the pair's reason; its cause is that of the first pair

@@ -344,7 +344,7 @@ TEST(Minimise, EndsWithinItsLimit) {
   EXPECT_GT(stopped, 10);
 }
 
-// If the search reaches a known result, it returns it. Without the known result, the search ends at the same pair.
+// If the search reaches a known result, it returns that result. Without it, the search would end at the same pair.
 TEST(Minimise, EndsWhereAnotherCaseEnded) {
   for (const Case& c : cases_of(strata::Stratum::near_vertex_face, 1)) {
     SCOPED_TRACE(c.name);

@@ -25,7 +25,7 @@ std::string archive_of(std::vector<PackedFile> files);
 bool is_archive(const std::filesystem::path& file);
 
 // The files, sorted by name. An archive is untrusted input: names, kinds and sizes are checked, and links are refused.
-// The files together must not be larger than the archive, so that pages shared by files cannot fill the disk.
+// The files together must not be larger than the archive: if they shared its pages, they could fill the disk.
 // Throws: FormatError that names the file, if it is damaged or hostile.
 std::vector<PackedFile> read_archive(const std::filesystem::path& file);
 

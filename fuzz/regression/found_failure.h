@@ -21,8 +21,8 @@ struct FoundFailure {
 };
 
 // Returns the first case of each signature that matches one of the shell patterns, or of all signatures if there are no
-// patterns. The minimised case comes first if there is one. At most `most` signatures of each subject, the most
-// frequent.
+// patterns. The minimised case comes first if there is one. Takes at most `most` signatures of each
+// subject: the most frequent ones.
 // Throws: UsageError if the directory holds no finished campaign; FormatError.
 std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directory,
                                             const std::vector<std::string>& globs, std::size_t most);

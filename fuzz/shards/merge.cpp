@@ -57,7 +57,7 @@ std::string named(const StoreSpec& store) {
   return store.directory.string() + (store.shard.whole() ? "" : ", shard " + store.shard.name());
 }
 
-// The folder for a missing shard, beside the other shards. It does not exist yet, or holds that unfinished shard.
+// The folder for a missing shard, beside the other shards. It does not exist yet, or holds some of the shard's results.
 fs::path place_for(const Shard& shard, const StoreSpec& beside, const fs::path& out) {
   const auto fits = [&](const fs::path& place) {
     if (place.lexically_normal() == out.lexically_normal()) return false;
@@ -170,7 +170,7 @@ fs::path place_of(const fs::path& out, const Json& spec) {
 
 constexpr std::string_view kCampaignPart = "campaign.graze.part";
 
-// The folder beside the target in which the campaign is built as kCampaignPart. A killed merge may have left one.
+// The folder beside the target, in which kCampaignPart is built. A killed merge may have left such a folder.
 fs::path folder_beside(const fs::path& place) {
   std::error_code error;
   fs::path part = place;

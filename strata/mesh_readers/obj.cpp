@@ -29,7 +29,7 @@ struct Largest {
   std::size_t line = 0;
 };
 
-// A nonzero whole number, which may be negative: vertices count from 1, or backwards from -1.
+// A nonzero whole number: 1 is the file's first vertex, and -1 is the last one defined so far.
 std::optional<std::int64_t> parse_reference(std::string_view text) {
   const bool negative = text.starts_with('-');
   if (negative) text.remove_prefix(1);

@@ -19,13 +19,13 @@
 namespace graze::strata {
 
 // How many coordinates float32 cannot hold, and how far rounding moved them. `beyond` counts coordinates that no
-// program would print for a float32, such as 1000000.01. It does not count 0.1, which a float32 can be printed as.
+// program would print for a float32, such as 1000000.01. It does not count 0.1, which programs print for a float32.
 struct Rounding {
   std::uint64_t coordinates = 0, rounded = 0, beyond = 0;
   double most = 0;  // no coordinate moved by more than this
 
-  // written: the double nearest to the number in the file.   is_it: whether they are equal.   slack: a bound on their
-  // distance.
+  // written: the double nearest to the number in the file.   is_it: whether `written` equals that number.   slack: a
+  // bound on their difference.
   void add(double written, float stored, double slack = 0, bool is_it = true) {
     ++coordinates;
     if (!std::isfinite(written) || (is_it && written == static_cast<double>(stored))) return;

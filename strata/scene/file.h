@@ -60,7 +60,7 @@ SceneFile parse_scene(const std::string& name, std::string_view text);
 // Reading this text gives the same scene, and the same scene always gives the same text.
 std::string scene_text(const SceneFile& scene);
 
-// "arm.toml#0123456789abcdef": the file's name, and a hash of its content without comments and order of fields.
+// "arm.toml#0123456789abcdef": the file's name, and a hash of its content, ignoring comments and the order of fields.
 std::string scene_name(const std::string& file, const SceneFile& scene);
 
 }  // namespace graze::strata

@@ -44,7 +44,7 @@ GRAZE_HD inline auto coplanar(auto& draws, const Scene& scene, const Space& plan
     const Form b = draw_form(draws, scene);
     Draft draft;
     const Vec away = put_contact(draws, touch, plane, a, b, draft);
-    // The gap lies in the plane; a push by ulps would leave it.
+    // Only the gap is used, because a push by ulps would leave the plane.
     const Push push = draw_push(draws);
     move(draft.b, away * (push.gap * (a.length < b.length ? a.length : b.length)));
     return finished(draws, scene, draft, {});
@@ -92,8 +92,9 @@ GRAZE_HD inline auto nested(auto& draws, const Scene& scene) {
   return finished(draws, scene, draft, {});
 }
 
-// Two triangles in parallel planes. Half of the planes are tilted, parallel before rounding, and 1 … 2^-40 of the size
-// apart (doubles: 2^-100). The other half are axis-aligned and at most 4 grid steps or ulps apart.
+// Two triangles in parallel planes. In half of the pairs, the planes are tilted and parallel before rounding; their
+// distance is the size times 1 … 2^-40 (doubles: 2^-100). In the other half, they are axis-aligned and at most 4 grid
+// steps or ulps apart.
 template <class D>
 GRAZE_HD BasicPair<typename D::Real> parallel(D& draws, const Scene& scene) {
   const bool tilted = draws.coin();
@@ -117,8 +118,8 @@ GRAZE_HD BasicPair<typename D::Real> parallel(D& draws, const Scene& scene) {
   return shuffled(draws, pair);
 }
 
-// A segment that contains the origin or starts at it. The third vertex is an end of the segment. If the segment is
-// parallel to an axis, the third vertex is any of its points, because rounding cannot move a point off such a line.
+// A segment that contains the origin or starts at it. The third vertex is an end of the segment, or, on a segment
+// parallel to an axis, any of its points, because rounding cannot move a point off such a line.
 GRAZE_HD inline void put_segment(auto& draws, const Vec& e, bool along_axis, double length, Vec (&triangle)[3]) {
   const double back = draws.coin() ? length * draws.positive() : 0;
   const double third = length * draws.positive();

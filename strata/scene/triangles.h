@@ -50,7 +50,7 @@ struct Form {
 GRAZE_HD inline Form draw_form(auto& draws, const Scene& scene, const Sizes& sizes = {}) {
   const double length = draw_from(draws, scene.edges, sizes.edges);
   const double flat = 1 / draw_from(draws, scene.aspect, sizes.aspect);
-  double most = 1 - flat * flat;  // squared ratio of the foot's distance from either end to the edge
+  double most = 1 - flat * flat;  // squared ratio of the foot's greatest distance from an end to the edge
   most = most > 0.25 ? sqrt(most) : 0.5;
   const double foot = (1 - most) + (2 * most - 1) * draws.positive();
   return {length, length * flat, length * foot};
@@ -70,7 +70,7 @@ GRAZE_HD inline Vec unit(const Vec& v) {
   return squared > 0x1p-200 ? v * (1 / sqrt(squared)) : unit_axis(0);
 }
 
-// The directions from which to draw: all, or if `flat` those in the plane of the perpendicular unit vectors x and y.
+// The directions from which to draw: all, or, if `flat`, those in the plane of the perpendicular unit vectors x and y.
 struct Space {
   bool flat = false;
   Vec x{1, 0, 0}, y{0, 1, 0};

@@ -21,7 +21,7 @@ void expect_on_host(const Lane& lane) {
     throw UsageError("--agree cannot run " + lane.id + " on this host (" + why + "); choose another lane");
 }
 
-// Returns the variant of the lane in which every operation is rounded as written.
+// Returns the lane's variant that rounds every operation as written.
 const Lane& rounded(const Lane& lane) { return *counterpart(lane, rounded_variant(lane.variant)); }
 
 }  // namespace

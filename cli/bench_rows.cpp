@@ -28,7 +28,7 @@ using query::Triangle;
 
 constexpr std::uint64_t kDrawn = 1'000'000;   // distinct triangles; larger arrays repeat them
 constexpr std::uint64_t kInTree = 1'000'000;  // a larger tree would take minutes and gigabytes
-constexpr std::uint64_t kByLanes = 1'000'000, kByCudaLanes = 10'000'000;  // limits for inexact lanes, which are slower
+constexpr std::uint64_t kByLanes = 1'000'000, kByCudaLanes = 10'000'000;  // limits on triangles for inexact lanes
 constexpr std::uint64_t kOnOneCore = 100'000'000, kInDoubles = 100'000'000;
 constexpr int kTimes = 3;
 constexpr Triangle kThesis = {2, -2, 4, 1, 5, -2, 1, -3, -3};
@@ -179,7 +179,7 @@ class Measuring {
       row.data = "resident";
     }
     if (devices_ == 1 || mode == "any") return;
-    query.part_count = parts.size();  // each device holds the array once
+    query.part_count = parts.size();  // all parts: each device has a copy of the array
     row.triangles = host.count * parts.size();
     add(row, query, GRAZE_ALL_GPUS, fmt::format("{} GPUs", devices_), nullptr, nullptr);
   }

@@ -53,8 +53,7 @@ struct BenchMachine {
 struct Bench {
   BenchMachine machine;
   std::vector<BenchRow> rows;
-  // Size of the smallest measured array from which one GPU, including copies, is always faster than all cores; 0 if
-  // there is none.
+  // Measured array size at and above which one GPU, including copies, is always faster than all cores; 0: none.
   std::uint64_t crossover = 0;
   std::map<std::string, std::uint64_t> not_timed_above;  // by lane: the size of the largest array on which it is timed
 };

@@ -70,7 +70,7 @@ void count_on_pairs(const Lane& before, const Lane& after, const std::vector<str
       analysis::verdicts_apart({{&before, &after}, {before.decide, after.decide}}, of_rows, 0, is_simpler);
   for (std::size_t s = 0; s < rows.size(); ++s) {
     Json& row = *rows[s];
-    // A count outside the bounds means that the code answers differently now, so it is not used.
+    // If the count is outside the bounds, the code now answers differently, and the count is not used.
     if (found[s].differs < row["least"] || found[s].differs > row["most"]) continue;
     row["least"] = row["most"] = found[s].differs;
     row["broken"] = found[s].broken;

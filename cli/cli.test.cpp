@@ -301,7 +301,7 @@ TEST_F(Cli, ReproRunsStoredCasesAndNoticesChange) {
   const Ran verdict = shell("sed -i 's/says=intersects/says=disjoint/' order.pairs && graze repro order.pairs");
   EXPECT_EQ(verdict.status, 1);
   EXPECT_TRUE(has(verdict.out, {"CHANGED, recorded: moller_1997/f32/cpu disjoint"}));
-  // Recorded lanes that do not run now count as no difference.
+  // A recorded lane that does not run now does not count as a difference.
   const std::string algorithm = shell.json("c/summary.json")["signatures"][0]["key"];
   const std::string other = algorithm.find("moller") == std::string::npos ? "moller_*" : "separating_*";
   expect_out("graze repro c/" + first + " --lanes '" + other + "'", {"not compared"});

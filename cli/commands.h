@@ -208,7 +208,7 @@ std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const AnyPair
 // Whether any verdict is wrong. No verdict is wrong if the truth is declined.
 bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth);
 
-// Describes in one line what runs the CUDA lanes under test, naming each kind of evidence once. Empty without any.
+// Returns, in one line, where the verdicts of the CUDA lanes under test come from. Empty if there are no such lanes.
 std::string cuda_evidence(const fuzz::SelectedLanes& under_test);
 
 }  // namespace graze::cli

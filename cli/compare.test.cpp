@@ -19,7 +19,7 @@ class Compare : public CommandTest {
   nlohmann::json json(const std::string& file) { return shell.json(file); }
 
   // Compares the campaigns `before` and `after`, and checks each row's counts against `graze discrepancy` on the same
-  // pairs. That verb receives the two builds that ran as two libraries.
+  // pairs. That verb gets the builds that the two campaigns ran, as two libraries.
   // build_of_lane: index into the builds cpu, cpu-fma and cpu-fast.
   void expect_counts(const std::string& strata, int pairs, std::size_t build_of_lane = 0) {
     const Ran said = shell.done("export XDG_CACHE_HOME=$PWD/cache; graze report --compare before after");
@@ -51,7 +51,7 @@ class Compare : public CommandTest {
   }
 };
 
-// In three cases, counting pair by pair finds changes that an unpaired test did not find.
+// In three of the next four tests, an unpaired test of the rates would find no change.
 TEST_F(Compare, AnotherCompilerIsCountedPairByPair) {
   const std::string run =
       "graze fuzz --subject mine=./mine.cpp --lanes mine/f32/cpu --strata near_edge_edge,thesis --pairs 2000 --out ";

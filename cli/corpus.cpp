@@ -242,7 +242,7 @@ void add_corpus(CLI::App& app, int& status) {
   auto options = std::make_shared<CorpusOptions>();
 
   CLI::App* command = add_verb(
-      *corpus, "add", "Add failures to the corpus, one case per signature, with where it was first and last seen",
+      *corpus, "add", "Add failures to the corpus, one case per signature, and record where it was first and last seen",
       "Example: graze corpus add near_edge_edge:1:42 --corpus regression", options);
   command
       ->add_option(

@@ -96,7 +96,7 @@ TEST_F(CorpusVerb, AMinimisedCaseStandsForItsFile) {
                   "truth/ kind=minimised from=x truth/'; tail -n +3 $1; } > m")
                 .status,
             0);
-  // In a file of cases, the minimised case represents all of them.
+  // If a file has a minimised case, only that case is added.
   EXPECT_TRUE(shell("graze corpus add m --corpus s").out.starts_with("1 new"));
   EXPECT_EQ(shell("grep -c 'kind=minimised from=x' s/cases.pairs").out, "1\n");
   expect_done("graze repro s/cases.pairs > /dev/null");

@@ -307,7 +307,7 @@ int discrepancy(DiscrepancyOptions options) {
 
 void add_discrepancy(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "discrepancy", "Count by how much the values of two lanes differ, and when that decides a comparison");
+      "discrepancy", "Measure how much two lanes' values differ, and how often that changes a comparison's outcome");
   command->footer("Example: graze discrepancy moller_1997/f32/cpu moller_1997/f32/cuda-fma");
   const auto options = std::make_shared<DiscrepancyOptions>();
   command

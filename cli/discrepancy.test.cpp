@@ -59,7 +59,7 @@ TEST_F(DiscrepancyCommand, CountsAreThoseOfAProgramThatSharesNoCode) {
   }
 }
 
-// Finds as many differing verdicts as a campaign counts on the same pairs. The campaign's report shows the answer.
+// The verb finds as many differing verdicts as a campaign on the same pairs. The campaign's report links to the page.
 TEST_F(DiscrepancyCommand, ACampaignsColumnIsTheSumOfItsVerdicts) {
   const std::string first = "interval_overlap/f32/cpu", second = "interval_overlap/f32/cuda-fma";
   expect_done("graze fuzz --lanes " + first + "," + second +
@@ -83,7 +83,7 @@ TEST_F(DiscrepancyCommand, ACampaignsColumnIsTheSumOfItsVerdicts) {
   expect_done(compare + "--strata lattice --seed 7 --out c");
   expect_done("graze report c");
   EXPECT_TRUE(has(shell.file("c/report.html"), {other_pairs}));
-  // More pairs of a stratum than the campaign drew.
+  // This draws more pairs of a stratum than the campaign did.
   expect_done("graze discrepancy " + first + " " + second + " --executor twin --pairs 2000 --strata thesis --out c");
   expect_done("graze report c");
   EXPECT_TRUE(has(shell.file("c/report.html"), {"that the campaign did not draw (seed 1)"}));
@@ -162,7 +162,7 @@ bool meet(const float a[9], const float b[9]) { return crosses(a, b) && crosses(
               " --subject mine=./mine.cpp:meet --executor twin --strata shared_vertex --pairs 1000 --out edited");
   EXPECT_TRUE(has(shell("graze discrepancy --compare m edited").out, {"The code of mine differs:"}));
   expect_done("sed -i 's/x >= 0/x > 0/' mine.cpp");
-  // The simplest pair shows the difference, and a campaign's report shows the sentence.
+  // The simplest pair shows the difference. The campaign's report, too, says that only verdicts are compared.
   const Ran pair = shell("graze repro " + of["simplest"]["place"].get<std::string>() +
                          " --subject mine=./mine.cpp:meet --lanes 'mine/f32/cpu,mine/f32/cpu-fma' | grep '^  mine'");
   EXPECT_NE(pair.out.find('!'), std::string::npos) << pair.out << pair.err;
@@ -175,7 +175,7 @@ bool meet(const float a[9], const float b[9]) { return crosses(a, b) && crosses(
   EXPECT_EQ(shell("graze report c").status, 1);
 }
 
-// The example in subjects/examples agrees with interval_overlap, except where the x87 keeps bits that a store rounds.
+// The example in subjects/examples agrees with interval_overlap unless the x87 keeps extra bits in its registers.
 TEST_F(DiscrepancyCommand, TheThesissAlgorithmDiffersOnTheX87) {
 #ifndef __x86_64__
   GTEST_SKIP() << "this processor has no x87";
@@ -194,7 +194,7 @@ TEST_F(DiscrepancyCommand, TheThesissAlgorithmDiffersOnTheX87) {
   EXPECT_GT(x87, fused);
 }
 
-// For a CUDA source, operands of comparisons are compared too. This one has two comparisons, only one with products.
+// For a CUDA source, operands of comparisons are compared too. Here, only one of two comparisons has products.
 TEST_F(DiscrepancyCommand, ComparesTheOperandsOfYourOwnCudaSource) {
   std::ofstream(shell.folder / "mine.cu") << R"(
 __device__ bool meet(const float a[9], const float b[9]) {

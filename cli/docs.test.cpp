@@ -34,7 +34,7 @@ bool matches(const Lines& expected, std::size_t e, const Lines& found, std::size
   return f < found.size() && expected[e] == found[f] && matches(expected, e + 1, found, f + 1);
 }
 
-// Shortens the output like the document's: keeps as many lines before and after the "…".
+// Shortens the output as the document does: keeps as many lines before and after the "…".
 Lines abridged(const Lines& expected, const Lines& found) {
   const auto dots = std::find(expected.begin(), expected.end(), "…");
   const auto before = dots - expected.begin(), behind = expected.end() - dots - 1;
@@ -173,7 +173,7 @@ std::vector<fs::path> documents() {
   return files;
 }
 
-// Checks [links](to/files), and `folder/file.h` or `folder/` in code.
+// Checks [links](to/files), and paths in backticks: `folder/file.h` or `folder/`.
 TEST(Docs, WhatTheyNameExists) {
   const std::regex link(R"(\]\(([^)#:]+)(#[^)]*)?\))");
   const std::regex path(R"(`([a-z]+/[A-Za-z0-9_./-]*(\.(h|inl|cuh?|cpp|ts|py|md|json|pairs|cmake|txt)|/))`)");
@@ -193,8 +193,8 @@ TEST(Docs, WhatTheyNameExists) {
   EXPECT_GE(paths, 15);
 }
 
-// Checks commits, and builds that are named by a commit, in prose, measurements and published data. A build of
-// uncommitted sources ("-dirty") counts as missing.
+// Checks the commits that prose, measurements and published data name. A build of uncommitted sources ("-dirty") counts
+// as missing.
 TEST(Docs, CommitsThatTheyNameAreInTheHistory) {
   const Shell shell("history");
   const std::string git = "git -C '" + kRoot.string() + "' ";

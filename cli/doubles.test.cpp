@@ -155,7 +155,7 @@ TEST_F(Doubles, ATableIsReadBackWithTheSameTruth) {
   }
 }
 
-// Walls of a model in metres, far from the origin: every second wall is one centimetre behind the one before.
+// Walls of a model in metres, far from the origin, in pairs that are one centimetre apart.
 std::string walls(int count) {
   std::string text = fmt::format("OFF\n{} {} 0\n", 3 * count, count), faces;
   for (int i = 0; i < count; ++i) {
@@ -357,7 +357,7 @@ TEST_F(Doubles, FailuresAreMinimisedAndExplained) {
   expect_out("graze minimize stored/f64:1:3 --lanes 'guigue_devillers_2003/*/cpu' --out small.pairs",
              {"cause: stored, as before"});
   EXPECT_TRUE(has(shell.file("small.pairs"), {"coordinates=f64"}));
-  // In its map, lanes in float decide what float32 stores, so many neighbouring cells are the same pair.
+  // In this case's map, lanes in float decide what float32 stores, so many neighbouring cells are the same pair.
   expect_out("graze map small.pairs --lanes 'guigue_devillers_2003/*/cpu'", {"guigue_devillers_2003/f64/cpu"});
   const Ran why = shell.done("graze explain small.pairs --lanes 'guigue_devillers_2003/*/cpu' --json");
   const Json line = Json::parse(why.out.substr(0, why.out.find('\n')));
@@ -446,7 +446,7 @@ TEST_F(Doubles, APolicyIsTunedOnThem) {
   const std::string strata = "--strata near_vertex_face,stored --pairs 2000 --coordinates f64 ";
   expect_done("graze tune moller_1997/f64/cpu --forbid false-negative " + strata + "--out t > told");
   const Json tuned = shell.json("t/tune.json");
-  // A campaign with the chosen policy, on the pairs that judged it, has the same counts.
+  // A campaign with the chosen policy counts the same errors on the pairs on which `tune` verified the choice.
   const std::string lane = "moller_1997/f64/cpu/" + tuned["chosen"].get<std::string>();
   expect_done("graze fuzz --lanes '" + lane + "' " + strata + "--seed 2 --out c");
   const Json summary = shell.json("c/summary.json");
@@ -596,7 +596,7 @@ TEST_F(Doubles, VerdictsOfOnesOwnCodeAreComparedOnThem) {
   EXPECT_GT(mended, 0u);
 }
 
-// Finds as many differing verdicts as a campaign counts on the same pairs. Lanes in float are left out and named.
+// The verb finds as many differing verdicts as a campaign on the same pairs. Lanes in float are left out and named.
 TEST_F(Doubles, ValuesOfLanesInDoubleAreComparedOnThem) {
   const std::string first = "moller_1997/f64/cpu", second = "moller_1997/f64/cuda-fma",
                     compare = "graze discrepancy " + first + " " + second + " --executor twin ",
@@ -619,7 +619,7 @@ TEST_F(Doubles, ValuesOfLanesInDoubleAreComparedOnThem) {
   const std::string other_pairs = "that the campaign did not draw";
   EXPECT_FALSE(has(shell.file("c/report.html"), {other_pairs}));
 
-  // The simplest pair whose verdict a source line changes is a pair of doubles.
+  // For some source line, the simplest pair whose verdict that line changes is a pair of doubles.
   bool in_doubles = false;
   for (const Json& line : of["origins"]["lines"]) {
     if (line["simplest"].is_null()) continue;
@@ -716,7 +716,7 @@ TEST_F(Doubles, ASceneIsDrawnInItsDoubles) {
   }
   EXPECT_EQ(pairs, 6000u);
   EXPECT_GT(stored, 600u);  // float32 has steps of half a metre there
-  // A killed campaign that is resumed has the same bytes, and its shards merge to the same counts.
+  // A campaign that is killed and resumed has the same bytes; one that is merged from shards has the same counts.
   for (const int write : {5, 15})
     ASSERT_EQ(shell(signal_at_write(SIGKILL, write) + fuzz + "--threads 1 --out two").status, 128 + SIGKILL) << write;
   expect_done(fuzz + "--threads 1 --out two && cmp one/summary.json two/summary.json && diff -r one/cases two/cases");

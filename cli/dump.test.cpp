@@ -107,7 +107,7 @@ print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
       return std::stoi(
           shell(std::string("python3 peak.py graze dump uniform --format ") + format + " --pairs " + pairs).out);
     };
-    EXPECT_LT(peak("20000"), peak("200") + 2048) << format;  // in KiB; the text has about 8 MiB
+    EXPECT_LT(peak("20000"), peak("200") + 2048) << format;  // in KiB; the text is about 8 MiB
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Embree's tree of bounding boxes over an array of triangles, which `graze bench` compares with queries if Embree is
-// installed. The boxes find candidates in float arithmetic; our exact decision finds those that intersect.
+// Embree's tree of bounding boxes over an array of triangles. If Embree is installed, `graze bench` compares the tree
+// with queries. The boxes find candidates in float arithmetic; our exact decision finds those that intersect.
 #pragma once
 
 #include <embree3/rtcore.h>

@@ -11,7 +11,7 @@
 
 namespace graze::cli {
 
-// Emits the first case on which a lane under test is wrong that the snippet can show. Prefers the first such lane of
+// Emits the first case on which the snippet can show that a lane under test is wrong. Prefers the first such lane of
 // the algorithm in the case's signature. If snippets of this kind show no lane, emits the first case on which any lane
 // is wrong, or else the first case. `name` is the user's name for the cases.
 // Throws: std::runtime_error if there is no such case, or none with finite coordinates.

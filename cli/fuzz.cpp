@@ -56,8 +56,8 @@ std::vector<std::string> details(const fuzz::Progress& progress, const std::vect
           reports::grouped(static_cast<std::uint64_t>(rate)) + " pairs/s", "most in " + sources[best].id};
 }
 
-// Finds the subject's smallest case. Minimises, as `graze minimize` would, the kMostShrunk signatures with the simplest
-// first kept pairs. Returns the simplest result and its file; among equal results, the one from the simpler kept pair.
+// Finds the subject's smallest case. Minimises, as `graze minimize` would, the kMostShrunk signatures whose first kept
+// pair is simplest. Returns the simplest result and its file; among equal results, the one from the simpler kept pair.
 std::pair<std::string, std::filesystem::path> smallest_case(const std::filesystem::path& campaign,
                                                             const fuzz::SelectedLanes& under_test, const Json& summary,
                                                             const std::string& subject) {
@@ -310,7 +310,7 @@ void add_fuzz(CLI::App& app, int& status) {
   command->footer("Example: graze fuzz --pairs 1M --strata 'near_*,coplanar_*' --out campaign");
   auto options = std::make_shared<FuzzOptions>();
   add_count(*command, "--pairs", options->pairs, 1, kMostWhole,
-            "Number of pairs in total, shared evenly by the strata; a mesh adds all of its own");
+            "Number of pairs in total, shared evenly by the strata; a mesh adds all its pairs");
   add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of all strata");
   add_threads_option(*command, options->threads);
   command
@@ -321,7 +321,7 @@ void add_fuzz(CLI::App& app, int& status) {
       ->option_text("DIR");
   add_shard_option(
       *command, options->shard,
-      "Part of the campaign to run: the K-th of N, in a directory of its own. `graze merge` joins the parts; the "
+      "Part of the campaign to run: the K-th of N, in its own directory. `graze merge` joins the parts; the "
       "result is the same as without shards");
   command
       ->add_option("--scratch", options->scratch,

@@ -149,7 +149,7 @@ void add_hunt(CLI::App& app, int& status) {
       ->option_text("DIR");
   add_shard_option(
       *command, options->shard,
-      "Part of the search to run: the K-th of N, with its share of the runs, in a directory of its own. `graze merge` "
+      "Part of the search to run: the K-th of N, with its share of the runs, in its own directory. `graze merge` "
       "joins the parts by kind of failure");
   add_draw_options(*command, *options, OfBothTypes::no);
   command->get_option("--strata")->description("Patterns of the strata to start from");

@@ -59,7 +59,7 @@ TEST_F(Inputs, FoldersAndDevicesInAFilesPlaceAreNamed) {
     EXPECT_FALSE(has(ran.err, {"basic_filebuf"})) << verb;
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
   }
-  // A read error on standard input is not taken for its end of file.
+  // A read error on standard input is not mistaken for the end of the input.
   expect_error("graze check - --truth-only < /tmp", 1, {"cannot read standard input"});
 }
 

@@ -40,7 +40,7 @@ TEST_F(InvariantsCommand, LeavesTheSameBytesWhateverTheThreads) {
   EXPECT_GT(json["lanes"][0]["invariants"]["order"]["changed"], 0);
 }
 
-// Besides the effect of scaling as a whole, the file and the table list that of each factor, such as doubling.
+// The file and the table list the effect of each scale factor, such as doubling, besides that of scaling as a whole.
 TEST_F(InvariantsCommand, TellsWhatEachScalingChangesAlone) {
   const std::string invariants =
       "graze invariants --lanes 'projected_sat/f32/cpu' --strata near_edge_edge --pairs 500 --out l";
@@ -62,7 +62,7 @@ TEST_F(InvariantsCommand, TellsWhatEachScalingChangesAlone) {
   EXPECT_EQ(shell(invariants + " | grep -cE '" + line + "$'").out, "1\n") << line << '\n' << ran.out;
 }
 
-// For each lane and invariant, explain and minimize find the lane wrong on the first pair of its case.
+// The lane is wrong on the first pair of each invariant's case file, which explain and minimize accept.
 TEST_F(InvariantsCommand, ItsCasesAreWrongVerdicts) {
   expect_done("graze invariants --lanes 'guigue*/f32/cpu' --strata 'near_*' --pairs 400 --out l");
   for (const char* invariant : {"order", "mirror", "axes"}) {

@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A program's minimum time limit for a pair, in seconds, because its first pair includes its start-up.
+// The shortest time limit for a program's pair, in seconds: the first pair's time includes the program's start-up.
 constexpr double kStartOfAProgram = 10;
 
 struct LeagueOptions : DrawOptions {

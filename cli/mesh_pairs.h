@@ -23,7 +23,7 @@
 
 namespace graze::cli {
 
-// How two triangles meet. common_vertex and common_edge: they share nothing else, as neighbours in a mesh do. pierces:
+// How two triangles meet. common_vertex, common_edge: like neighbours in a mesh, they share only that. pierces:
 // no tiny translation separates them, or they are coplanar and share an area. touches: all others that intersect.
 enum class Kind : std::uint8_t { apart, common_vertex, common_edge, touches, pierces };
 inline constexpr std::size_t kKinds = 5;
@@ -52,7 +52,7 @@ struct TwoMeshes {
   strata::MeshPairs a;
   std::optional<strata::MeshPairs> b;
 
-  // Whether a coordinate is beyond float32; if so, the triangles are decided as doubles.
+  // Whether a coordinate has more digits than float32 holds; if so, the triangles are decided as doubles.
   bool are_doubles() const { return a.rounding.beyond > 0 || (b && b->rounding.beyond > 0); }
   Pair pair(std::uint32_t i, std::uint32_t j) const;
   DoublePair pair_of_doubles(std::uint32_t i, std::uint32_t j) const;
@@ -73,7 +73,7 @@ struct Decider {
   std::function<void(Candidates&)> decide;  // sets `intersect`; called by several threads at once
 };
 
-// executor: auto, one-core, all-cores or one-gpu. auto takes all cores.
+// executor: auto, one-core, all-cores or one-gpu. auto: all cores.
 // Throws: std::runtime_error if there is no device.
 Decider exact_decider(const std::string& executor);
 

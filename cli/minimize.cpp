@@ -221,7 +221,7 @@ int minimize_directory(MinimizeOptions options) {
     if (i % options.shard.of == options.shard.number - 1) rows.push_back(summary["signatures"][i]);
   }
   expect_writable(directory);
-  fuzz::read_timings(directory);  // a damaged file must fail before the work, whose end adds to it
+  fuzz::read_timings(directory);  // fails now if damaged, not after the work, which adds to the file
   fuzz::expect_file(directory / "failures.json");
   if (whole) fuzz::expect_own(directory / "failures.json", Json{{"summary", ""}, {"cases", ""}}.dump(1));
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();

@@ -215,7 +215,7 @@ TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
       "    for (unsigned i = 0; i != 4000000000u; ++i) n = n * n + i;\n"
       "  return product(a) != 0 && n != 0;\n"
       "}\nEOF\n"
-      // Each has two products that are equal after rounding.
+      // In each triangle, two products of coordinates are equal after rounding.
       "echo '0x1.000002p+0 0x1.000002p+0 1 0x1.000004p+0 1 1 3 3 1  0x1.000006p+0 0x1.000006p+0 9 0x1.00000cp+0 1 9 0 "
       "2 9' > p");
   const std::string explain =

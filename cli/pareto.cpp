@@ -22,9 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// So many that a processor cannot learn the branches that the pairs take, as it does with 256 pairs.
+// Enough pairs that a processor cannot learn which branches they take; it can with 256 pairs.
 constexpr std::size_t kPairsInCache = 4096, kPairsFromMemory = std::size_t{1} << 19;  // 295 kB, 38 MB
-// If a lane is wrong on none of these, it errs on at most 0.1 %.
+// With 95 % confidence, a lane that is wrong on none of these pairs errs on at most 0.1 %.
 constexpr std::uint64_t kFewestAtAnExtreme = 4000;
 constexpr std::size_t kPairsOnDevice = std::size_t{1} << 22;  // 302 MB
 

@@ -54,7 +54,7 @@ int plan(const PlanOptions& options) {
                          " runs on cores; choose other --lanes, or give --cores");
     }
   }
-  // If the rate is given, no device is needed; the store's rows are then measured on the CPU.
+  // If the rate is given, no device is needed; the size of the store's rows is then measured on the CPU.
   if (gpu && options.rate == 0) campaign.engines = fuzz::choose_engines(campaign, fuzz::EngineChoice::gpu);
   if (campaign.engines.size() > 1) campaign.engines.resize(1);
   const fuzz::Sample sample = fuzz::measure(campaign);

@@ -20,8 +20,8 @@ class Report : public CommandTest {
   nlohmann::json json(const char* file) { return shell.json(file); }
 };
 
-// The map's differences come from signatures. The test also counts differences from x86-gcc, whose verdict equals cpu's
-// on every pair.
+// The map counts differences from x86-gcc, by signatures. x86-gcc's verdict equals cpu's on every pair, so these counts
+// must equal the differences from cpu in the rates.
 TEST_F(Report, MapsToolchains) {
   expect_done(
       "graze fuzz --pairs 4000 --lanes 'interval_overlap/*,exact/f32/cpu' --executor twin "

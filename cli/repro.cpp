@@ -23,7 +23,7 @@ namespace {
 
 enum class Compared { same, changed, nothing };
 
-// Compares the recorded signature with the current one, on those of the recorded lanes that ran.
+// Compares the recorded signature with the current one, for the recorded lanes that ran.
 Compared compare(const analysis::Signature& recorded, const analysis::Signature& now,
                  std::span<const Lane* const> run) {
   const auto ran = [&](const std::string& lane) {
@@ -78,8 +78,8 @@ bool compare_truth(const corpus::Entry& entry, const oracle::Truth& t) {
   return changed;
 }
 
-// Prints a recorded verdict, as `graze invariants` writes it, that the lane's verdict now contradicts. Returns whether
-// there is one.
+// If the lane's verdict differs from the recorded one (a field that `graze invariants` writes), prints the recorded
+// verdict. Returns whether it differs.
 bool compare_verdict(const corpus::Entry& entry, std::span<const Lane* const> run, std::span<const Verdict> verdicts) {
   const std::string lane = corpus::text_of(entry, "lanes"), recorded = corpus::text_of(entry, "says");
   for (std::size_t l = 0; l < run.size(); ++l) {

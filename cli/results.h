@@ -13,11 +13,11 @@ namespace graze::cli {
 
 inline constexpr const char* kPairs = "graze-pairs 1\n";  // the first line of a file of pairs
 
-// Add --force to one verb, or to every verb that writes results to a given place, except `merge`, whose folder is new.
+// Adds --force to one verb, or to all that write results where the user says, except `merge`: its folder must be new.
 void add_force_flag(CLI::App& verb);
 void add_force(CLI::App& app);
 
-// Adds --junit. tests: the help's words for what is one test.
+// Adds --junit. tests: words for the help, such as "one test for each case".
 void add_junit(CLI::App& command, std::string& file, const std::string& tests);
 
 // Throws: UsageError for a file that a result with this text may not replace; std::runtime_error for a folder.

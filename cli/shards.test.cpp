@@ -225,7 +225,7 @@ TEST_F(Shards, StatusTellsWhatRunsAndWhatNeedsHelp) {
   expect_done("graze status killed --stalled 3000");
 }
 
-// Another campaign's records do not pass for a shard's own.
+// Another campaign's records are not accepted as a shard's own.
 TEST_F(Shards, RecordsOfAnotherCampaignAreRefused) {
   const std::string fuzz = "graze fuzz --pairs 600 --strata thesis,near_vertex_face --lanes moller_1997/f32/cpu --out ";
   expect_done("for k in 1 2 3; do " + fuzz + "s$k --shard $k/3 || exit 1; done; " + fuzz + "whole");

@@ -300,7 +300,7 @@ int toolchain(const Options& options) {
 
 void add_toolchain(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("toolchain",
-                                         "List toolchains, or measure how code of a toolchain or a compiler's command "
+                                         "List toolchains, or measure how code from a toolchain or a compiler command "
                                          "rounds, and list the products that it fuses; exit with 1 if a result is not "
                                          "as documented");
   command->footer("Example: graze toolchain 'g++ -O2 -march=haswell'");
@@ -310,10 +310,9 @@ void add_toolchain(CLI::App& app, int& status) {
                    "Name of a toolchain, the command of a compiler with its flags, or hip: what hipcc fuses for AMD's "
                    "GPUs (default: list the toolchains)")
       ->option_text("NAME|COMMAND|hip");
-  CLI::Option* run = command
-                         ->add_option("--run", options->run,
-                                      "Command that runs the result, such as qemu-aarch64; {} stands for its file")
-                         ->option_text("COMMAND");
+  CLI::Option* run =
+      command->add_option("--run", options->run, "Command that runs the result, such as qemu-aarch64; {} is the result")
+          ->option_text("COMMAND");
   CLI::Option* claims =
       command
           ->add_option(

@@ -78,7 +78,7 @@ void expect_program(const std::string& file) {
       cannot("read", file, fs::exists(file) ? "it is not a regular file" : "there is no such file"));
 }
 
-// For a Python function such as "mine.py:meet", writes a program that calls it beside the folder `out`.
+// For a Python function such as "mine.py:meet", writes, beside the folder `out`, a program that calls it.
 TriedCode code_of_python(const std::string& file, const std::string& function, const std::string& out) {
   const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '.' || c >= 0x80; };
   if (function.empty() || !std::all_of(function.begin(), function.end(), fits))

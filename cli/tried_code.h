@@ -16,7 +16,7 @@ struct TriedCode {
 };
 
 // source: FILE, FILE:FUNCTION or cmd:COMMAND, with or without NAME= before it. For a Python function such as
-// "mine.py:meet", writes the program that calls it beside the folder `out`.
+// "mine.py:meet", writes, beside the folder `out`, the program that calls it.
 // Throws: UsageError for an impossible function name, or if a foreign file has the program's name; std::runtime_error
 // for a program that cannot be read.
 TriedCode code_of(const std::string& source, const std::string& out);

@@ -199,7 +199,7 @@ std::string write_test(const Answer& answer, const fuzz::SelectedLanes& under_te
 }
 
 int interrupted() {
-  fmt::print(stderr, "graze: interrupted; finished work is kept, and the same command resumes it\n");
+  fmt::print(stderr, "graze: interrupted; finished work is kept, and the same command resumes the run\n");
   return kInterrupted;
 }
 

@@ -323,7 +323,7 @@ TEST_F(TryCommand, NamesTheEpsilonAndTheCommandThatTunesIt) {
   EXPECT_TRUE(names(one["epsilon"].get<std::string>(), {"in place of 1e-6f at one.cpp:1"})) << one["epsilon"];
   EXPECT_EQ(one["tune"], "graze tune one/f32/cpu --from try");
   EXPECT_EQ(one["why_not_tuned"], "");
-  // The stated effect equals that of code with a negligible number.
+  // The stated effect equals that of replacing the epsilon by a negligible number.
   write("tiny.cpp", by_x + "1e-36f; }\n");
   const auto changed = counts_in(one["epsilon"]);
   ASSERT_EQ(changed.size(), 3u) << one["epsilon"];

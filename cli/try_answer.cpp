@@ -84,7 +84,7 @@ std::string exact_in_words(const Lane& exact, const reports::ReportLane& own, co
                          ? fmt::format("right on all {} pairs", reports::grouped(counts.total.pairs))
                          : fmt::format("not right on {}, which must never happen", reports::counted(not_right, "pair")),
                      of_float32 && own.name.scalar == name(Scalar::f64)
-                         ? fmt::format(", which are of float32; on pairs of doubles {} is right, and --coordinates "
+                         ? fmt::format("; these are float32 pairs; on pairs of doubles {} is right, and --coordinates "
                                        "f64 draws them",
                                        fuzz::kExactDoubles)
                          : "");

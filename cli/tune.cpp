@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze tune`: finds the best epsilon policy for a lane on given pairs, and finds problems with epsilons that error
-// counts hide.
+// `graze tune`: finds the best epsilon policy for a lane on given pairs, and reports problems that its error counts do
+// not show.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ std::vector<strata::PairSource> without_meshes(std::vector<strata::PairSource> s
   return sources;
 }
 
-// Returns the campaign's own pairs to choose on, and fresh pairs to judge the choice.
+// Returns the campaign's own pairs to choose on, and fresh pairs to verify the choice on.
 TunePairs pairs_from(const TuneOptions& options) {
   CampaignPairs campaign = pairs_of_campaign(options.from, 0, "tune on");
   if (!campaign.summary.at("complete"))
@@ -312,10 +312,10 @@ void add_tune(CLI::App& app, int& status) {
       ->excludes("--scene")
       ->option_text("DIR");
   add_count(*command, "--pairs", options->pairs, 10, kMostWhole,
-            "Number of pairs that judge the choice; without --from, the choice is made on a tenth as many other pairs")
+            "Number of pairs on which the choice is tested; without --from, it is made on a tenth as many other pairs")
       ->default_str("1000000; with --from as many as the campaign drew");
   add_count(*command, "--seed", options->seed, 0, kMostWhole - 1,
-            "Seed of the pairs on which the choice is made; those that judge it have the next seed")
+            "Seed of the pairs on which the choice is made; it is tested on pairs of the next seed")
       ->excludes("--from");
   CLI::Option* const forbid = command->add_option(
       "--forbid", options->forbid, "Errors to avoid: false negatives, false positives, or any wrong verdict");
@@ -327,9 +327,9 @@ void add_tune(CLI::App& app, int& status) {
       ->check(number(1e-15, 1.0))
       ->capture_default_str()
       ->option_text("RATE");
-  CLI::Option* const max_other =
-      command->add_option("--max-other", options->max_other,
-                          "With --forbid of one kind: highest rate of the other kind at which a tolerance is useful");
+  CLI::Option* const max_other = command->add_option(
+      "--max-other", options->max_other,
+      "With one kind of error forbidden: highest rate of the other kind at which a tolerance is useful");
   max_other->check(number(0.0, 1.0))->capture_default_str()->option_text("RATE");
   add_threads_option(*command, options->threads);
   command

@@ -32,8 +32,8 @@ struct TuneOptions : DrawOptions {
 // `graze tune LANE LANE --agree`.   Requires: two lanes.
 int agree(const TuneOptions& options);
 
-// The pairs on which the choice is made (a tenth of --pairs, or the campaign's pairs), and the pairs that verify the
-// choice (drawn with the next seed).
+// The pairs on which the choice is made (a tenth of --pairs, or the campaign's pairs), and those on which it is
+// verified (drawn with the next seed).
 struct TunePairs {
   fuzz::Json campaign;  // summary of the campaign with these `sources`; null: none
   std::vector<strata::PairSource> sources, others;
@@ -42,7 +42,7 @@ struct TunePairs {
   bool in_doubles() const;  // whether some pairs are pairs of doubles
 };
 
-// Throws: what drawn() and pairs_of_campaign throw; UsageError if no pairs are left to choose on, or to verify.
+// Throws: what drawn() and pairs_of_campaign throw; UsageError if no pairs are left to choose on, or to verify on.
 TunePairs tune_pairs(const TuneOptions& options);
 
 // Throws: UsageError if some pairs are doubles and the lane takes only float32.
@@ -70,8 +70,8 @@ void write_listed(const std::filesystem::path& out, const std::vector<Result>& r
 // lane of a user's code needs.
 std::string next_command(const std::filesystem::path& out, const Result& last, const std::string& lanes);
 
-// Returns sentences with each lane's cost per pair: host lanes on one core, CUDA lanes on the device. Says if a cost
-// was not measured: for programs, and for CUDA lanes without a device (a twin's time is not theirs).
+// Returns sentences with each lane's cost per pair: host lanes on one core, CUDA lanes on the device. Says which
+// costs are not measured: those of programs, and of CUDA lanes without a device (a twin's time is not the lane's).
 std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
                                         const std::vector<strata::PairSource>& sources);
 

@@ -132,7 +132,7 @@ void show_against_the_first(Viewed& viewed) {
   viewed.opens_with_triangles = true;
 }
 
-// Adds the triangles of `graze query REFERENCE MESH`, hits first; the hits are also the pairs.
+// Adds the triangles of `graze query REFERENCE MESH`, hits first. The pairs to show are the hits.
 void add_query(const std::string& reference, const std::string& file, bool exact_input, Viewed& viewed) {
   const strata::MeshPairs of_references = read_references(reference), of_mesh = strata::read_triangles(file);
   const bool are_doubles = of_references.rounding.beyond > 0 || of_mesh.rounding.beyond > 0;
@@ -236,7 +236,7 @@ void add_view(CLI::App& app, int&) {
                       "nine numbers, or MESH#FACE");
   command
       ->add_option("--random", *random,
-                   "Number of random triangles of the thesis of 2012 that are shown first, against its reference")
+                   "Number of random triangles to show first, drawn as in the thesis of 2012, against its reference")
       ->transform(whole_number(1, reports::kMostViewedTriangles))
       ->excludes(pairs)
       ->option_text("N");

@@ -116,7 +116,7 @@ struct Draft {
   std::optional<std::size_t> only_double;  // the first number that needs a double
 };
 
-// Whether the exponent has more than five digits. The oracle reads numbers exactly, so these would fill the memory.
+// Whether the exponent has more than five digits. The oracle reads numbers exactly, so such a number could fill memory.
 bool has_long_exponent(std::string_view number) {
   const std::size_t at = number.find_first_of(is_hex(number) ? "pP" : "eE");
   if (at == number.npos) return false;

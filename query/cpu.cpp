@@ -85,7 +85,7 @@ struct Block {
     }
   }
 
-  // Sets the columns to differences from the origin; those beyond float32 become infinite.
+  // Sets the columns to differences from the origin; those beyond float32's range become infinite.
   void look_from(const double* origin) {
     for (std::size_t k = 0; k < 9; ++k) {
       for (std::size_t i = 0; i < kBlock; ++i) columns[k][i] = static_cast<float>(rows[i][k] - origin[k % 3]);
@@ -252,7 +252,7 @@ void run(const Question& question, cuda::QueryWork& work) {
     Worker<Real> worker(question);
     go_on(worker);
   };
-  // One task for each thread. A task that finds no free thread starts later and finds no range left.
+  // One task for each thread. A task that gets no free thread starts later, when no range is left.
   tbb::task_arena arena(threads);
   arena.execute([&] {
     tbb::parallel_for(

@@ -10,7 +10,7 @@ namespace graze::query {
 // Runs on the question's threads until no range is left. The calling thread takes the first ranges alone, because
 // starting threads takes longer than finding a hit among the first triangles.
 // Requires: a host lane; for doubles, the exact lane.
-// Throws: std::bad_alloc, and every exception of the progress callback.
+// Throws: std::bad_alloc, and whatever the progress callback throws.
 void run_on_cpu(const Question& question, cuda::QueryWork& work);
 
 }  // namespace graze::query

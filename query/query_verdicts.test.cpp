@@ -214,8 +214,8 @@ TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
   EXPECT_EQ(bytes[2], 2);
 }
 
-// The slabs are the thinnest ones: along the normal, and along the direction perpendicular to it and to the longest
-// edge, which may be any of the three. A thicker slab would cost time, but lose no hits.
+// The slabs are the thinnest ones. Their directions are the normal, and the direction perpendicular to it and to the
+// longest edge (tested as each of the three). A thicker slab would cost time, but lose no hits.
 TEST(PreparedTriangle, SlabsAreSquareToTheNormalAndTheLongestEdge) {
   const Vec3<double> corners[3] = {{1, 2, 3}, {9, -6, 5}, {4, 1, 2.5}};
   const Vec3<double> longest = corners[1] - corners[0];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A separating-axes test with an absolute epsilon, whose value a test writes or defines. Tests compare and tune it.
+// A separating-axes test with an absolute epsilon, for tests that compare and tune code. They set its value.
 static const float kEps = EPSILON;
 #include <algorithm>
 struct Vec {

@@ -25,7 +25,7 @@ typedef struct {
 typedef struct {
   coord_t p;       /* a point of the plane */
   vector_t normal; /* of any length */
-  float d;         /* signed distance of the origin, times the length of the normal */
+  float d;         /* signed distance of the origin from the plane, times the length of the normal */
 } plane_t;
 
 #endif

@@ -42,8 +42,8 @@ enum graze_layout {
 /* The maximum number of triangles in all parts of a query together. */
 #define GRAZE_MOST_TRIANGLES ((uint64_t)1 << 48)
 
-/* An array of triangles. rows, columns and vertices point to coordinates of the query's type, and are aligned like it.
-   Strides are in bytes; 0 means that elements are contiguous. The following rules are checked; breaking one gives
+/* An array of triangles. rows, columns and vertices point to coordinates of the query's type, and are aligned for that
+   type. Strides are in bytes; 0 means that elements are contiguous. The following rules are checked; breaking one gives
    GRAZE_BAD_ARGUMENT. A stride is a multiple of the alignment, at least an element's size, and not negative. An array
    takes at most PTRDIFF_MAX bytes from its first element to its last, and does not wrap around the end of the address
    space. The caller guarantees that the pointers refer to such memory. */

@@ -13,8 +13,8 @@ std::string why_not_on_processor(const Lane& lane, const std::string&) {
   return runs_on_this_cpu(lane) ? "" : "no " + std::string(info_of(lane.variant).needs) + " instructions";
 }
 
-// Foreign CUDA code runs on the device, or as a twin, in a separate process. Graze treats it like any other foreign
-// code, and does the same for a toolchain's program.
+// Foreign code and the programs of toolchains run in a separate process. Foreign CUDA code runs there on the device or
+// as a twin, so no instructions of this processor are required.
 std::string why_not_in_process(const Lane& lane, const std::string& why_no_device) {
   if (!lane.decide) return lane.evidence;
   return lane.is_cuda() ? "" : why_not_on_processor(lane, why_no_device);

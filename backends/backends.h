@@ -21,7 +21,7 @@ struct Backend {
   // run the lane; may be empty.
   std::string (*why_not_on_host)(const Lane& lane, const std::string& why_no_device);
   // The evidence that on_host gives the lane's verdicts: "twin, verified on …". Empty if the lane's own code runs here.
-  // of_doubles: whether the pairs are pairs of doubles.
+  // of_doubles: whether the pairs' coordinates are doubles.
   std::string (*evidence)(const Lane& lane, bool of_doubles);
 };
 

@@ -58,7 +58,7 @@ endfunction()
 # graze_together(TARGET [ALONE file…] [MUTATED file…]): a unity build in batches of nine sources, or of eighteen in a
 # campaign build. It saves the seconds that each file spends on CLI11, our own headers and its copy of the JSON library.
 # ALONE files are compiled separately because their private names clash with those of other files. MUTATED files are
-# compiled separately, except in a campaign build, because scripts/mutate compiles them one by one.
+# compiled separately because scripts/mutate compiles them one by one; a campaign build ignores this.
 function(graze_together target)
   cmake_parse_arguments(arg "" "" "ALONE;MUTATED" ${ARGN})
   set(batch 9)

@@ -102,7 +102,7 @@ void visit(const void* pairs, int doubles, F f) {
   doubles ? f(static_cast<const DoublePair*>(pairs)) : f(static_cast<const Pair*>(pairs));
 }
 
-// Decides up to kBlock pairs. A lane that takes no doubles decides them after rounding to float32.
+// Decides up to kBlock pairs. For a lane that takes no doubles, pairs of doubles are first rounded to float32.
 template <class Real>
 void decide_block(const DecideBlock& decide, const BasicPair<Real>* pairs, std::size_t count, std::uint64_t* intersects,
                   std::uint64_t* declined) {
@@ -127,8 +127,8 @@ Triangles<Real> triangles_of(const void* numbers, std::uint64_t count) {
   return {static_cast<const Triangle<Real>*>(numbers), count};
 }
 
-// Rounds the triangles to float32, to compute their boxes. Rounding, even down to the largest float32, keeps the order
-// of coordinates, so triangles that intersect have rounded boxes that overlap.
+// Rounds the triangles to float32, to compute their boxes. Rounding keeps the order of coordinates, even where it
+// clamps them to the largest float32. So if triangles intersect, their rounded boxes overlap.
 std::vector<Triangle<float>> rounded(Triangles<double> triangles) {
   static constexpr double kMost = std::numeric_limits<float>::max();
   const auto round = [](double x) { return static_cast<float>(std::isfinite(x) ? std::clamp(x, -kMost, kMost) : x); };
@@ -154,7 +154,7 @@ std::vector<std::string> parts_of(std::string_view names) {
   return parts;
 }
 
-// Finds the pairs of triangles that intersect within a mesh, or between two meshes, and sorts them. boxes: their boxes.
+// Finds and sorts the pairs of triangles that intersect, within a mesh or between two. boxes: the triangles' boxes.
 template <class Real>
 void find_intersections(Triangles<Real> first, Triangles<Real> second, const strata::BoxSlabs& boxes,
                         bool only_piercing, const int& stop) {
@@ -313,8 +313,8 @@ int graze_py_meets(const void* reference, const void* triangles, int doubles, st
 }
 
 // Finds the pairs of triangles that intersect within a mesh (b null) or between two meshes. With only_piercing, pairs
-// that only touch are left out. Sets the number of pairs; graze_py_take then copies the sorted pairs in the same
-// thread. Ends soon after another thread makes `stop` nonzero.
+// that only touch are left out. Sets the number of pairs; a call of graze_py_take in the same thread then copies
+// the sorted pairs. Ends soon after another thread makes `stop` nonzero.
 int graze_py_intersections(const void* a, std::uint64_t count_a, const void* b, std::uint64_t count_b, int doubles,
                            int only_piercing, std::uint64_t* count, const int* stop) {
   return guarded([&] {

@@ -32,7 +32,7 @@ std::string differing(const Agreement& a, const std::string& pairs) {
 
 const std::string kSamePairs = "the same pairs";
 
-// Whether the chosen tolerance is the smallest of the sweep, which is too small to cover ordinary rounding errors.
+// Whether the chosen tolerance is the smallest of the sweep. The smallest does not cover ordinary rounding errors.
 bool is_smallest(const Agreed& a) {
   return std::any_of(a.curves.begin(), a.curves.end(),
                      [&](const auto& curve) { return curve.points.front().policy == a.chosen; });
@@ -60,7 +60,7 @@ std::string answer(const AgreeQuestion& q, const Agreed& a) {
     case TuneResult::not_confirmed:
       return fmt::format(
           "Not settled: {}; {}. The rate was at most {} on the pairs that the tolerance was chosen on, but not on "
-          "these. More pairs (--pairs) or a stricter --max-rate may find a tolerance that keeps it.",
+          "these. More pairs (--pairs) or a stricter --max-rate may find a tolerance that keeps the rate.",
           found, low, q.max_rate);
     case TuneResult::not_satisfiable:
     case TuneResult::not_useful:  // never happens: differing verdicts are of one kind

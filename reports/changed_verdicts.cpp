@@ -15,7 +15,7 @@ namespace graze::reports {
 using Json = nlohmann::ordered_json;
 namespace {
 
-// The name of a case without its coordinates, which compare.json has.
+// The name of a case. Leaves out the coordinates, because compare.json has them.
 std::string place_of(const std::string& text) { return text.substr(0, text.find(' ')); }
 
 // The totals in the headline: how many verdicts changed, and in which lanes.

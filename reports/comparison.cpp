@@ -38,7 +38,7 @@ std::vector<std::pair<Name, Json>> rates_by_name(const Json& report) {
   return rates;
 }
 
-// A report's strata by name. Meshes and hunts of one name may have different pairs, and then have other descriptions.
+// A report's strata by name. Meshes or hunts of one name may have different pairs; then their descriptions differ.
 std::map<std::string, Json> strata_of(const Json& report) {
   std::map<std::string, Json> rows;
   for (const Json& row : report.at("strata")) rows[row.at("id")] = row;
@@ -93,8 +93,8 @@ double chance_of_at_most(double count, double all, const double (&pairs)[2]) {
   return sum;
 }
 
-// Whether two rates differ: by chance, the errors would hardly ever be distributed between the campaigns this unevenly
-// or more unevenly.
+// Whether two rates differ: chance would hardly ever distribute the errors between the campaigns at least this
+// unevenly.
 // Reference: Fisher 1935, the exact test; twice the smaller of the two tails.
 bool apart(const Json& l, const Json& r) {
   const double count[2] = {l.at("count"), r.at("count")}, of[2] = {l.at("of"), r.at("of")};
@@ -186,8 +186,8 @@ Json only_in(const Json& kinds, const Json& others, const Json& report, const Js
   return rows;
 }
 
-// The kinds whose subject changed a verdict. Other kinds may differ although no verdict changed, because `graze
-// minimize` finds a cause on one pair of a signature and may replace that pair.   verdicts: null if unknown.
+// The kinds of subjects with a changed verdict. Other kinds may differ although no verdict changed, because `graze
+// minimize` finds the cause on one pair of each signature, not always on the same one.   verdicts: null if unknown.
 Json of_changed(const Json& kinds, const Json& verdicts) {
   if (verdicts.is_null()) return kinds;
   std::set<std::string> subjects;
@@ -234,7 +234,7 @@ std::string scene_of(const Json& run) {
   return run.contains("scene") && !run["scene"].is_null() ? run["scene"].get<std::string>() : "none";
 }
 
-// The hash in a scene's name, such as arm.toml#0123456789abcdef, which does not depend on the file's folder.
+// The hash at the end of a scene's name, such as arm.toml#0123456789abcdef. It does not depend on the file's folder.
 std::string content_of(const std::string& scene) { return scene.substr(scene.rfind('#') + 1); }
 
 // The number of the lane's changed verdicts, in words.   verdicts: null if unknown.
@@ -250,7 +250,7 @@ std::string changes_of(const std::string& lane, const Json& verdicts) {
   return fmt::format("{} {}", number, most == 1 ? "verdict differs" : "verdicts differ");
 }
 
-// A sentence for each toolchain and scalar whose compiler fuses different products in the second campaign.
+// A sentence for each toolchain and scalar for which the compiler fuses other products in the second campaign.
 std::vector<std::string> plan_differences(const Json& then, const Json& now, const Json& verdicts) {
   std::vector<std::string> sentences;
   for (const Json& old : then.value("subjects", Json::array())) {

@@ -24,8 +24,8 @@ inline constexpr double kLeastSignatures = 14;
 // If both campaigns ran on the same pairs, every different count is a change, and the headline is about `verdicts`.
 // This list has a row for each lane and stratum: {"lane", "stratum", "pairs", "known": "same", "changed" or "unknown",
 // "least", "most"}. The last two are bounds on the number of changed verdicts. If the changes were counted, the row
-// also has "broken" (the number that became wrong), "mended" (that became right), "smallest_broken" and
-// "smallest_mended".
+// also has "broken" (the number that became wrong), "mended" (the number that became right),
+// "smallest_broken" and "smallest_mended".
 //
 // Kinds, and rates over all strata, are compared only if both campaigns have the same strata in the same shares. A
 // subject's kinds are compared only if it has the same lanes in both campaigns.

@@ -65,7 +65,7 @@ TEST(Comparison, SeedAndSizeAloneChangeNothing) {
   EXPECT_LE(changed, 1);
 }
 
-// Twice the smaller tail is 1.0e-7 for 290 and 205 of 500 pairs, and 1.0e-6 for 290 and 212.
+// If 290 and 205 of 500 pairs each are wrong, twice the smaller tail is 1.0e-7; for 290 and 212 it is 1.0e-6.
 TEST(Comparison, TheTestIsExact) {
   const auto changed = [](std::uint64_t l, std::uint64_t r, std::uint64_t of_l, std::uint64_t of_r) {
     Json before = report_of(1, of_l, 1), after = report_of(2, of_r, 1);
@@ -93,7 +93,7 @@ TEST(Comparison, WhatIsSmallButSureIsAChange) {
                        "or went; differences under "));
 }
 
-// The sums of wrong verdicts are equal, so only the directions show the change.
+// The numbers of wrong verdicts are equal, so only the kinds of error show the change.
 TEST(Comparison, FalsePositivesThatBecomeFalseNegativesAreAChange) {
   const Json before = report_of(1, 50'000, 10);
   for (const std::uint64_t seed : {1, 2}) {
@@ -224,8 +224,8 @@ TEST(Comparison, OtherFusedProductsAreSaid) {
   EXPECT_TRUE(names(after["compare"]["differences"][0], {"3f2a", "9b1c", "1,234 verdicts differ"}));
 }
 
-// The plans of cpu-fma are not recorded. So if both campaigns have such lanes, the report says that the compiler
-// differs.
+// Campaigns do not record which products cpu-fma lanes fuse. So if both campaigns have such lanes, the report says that
+// the compiler differs.
 TEST(Comparison, AnotherCompilerOfContractedLanesIsSaid) {
   Json before = report_of(1, 50'000, 10), after = before;
   before["run"]["build"]["compiler"] = "GNU 12.2.0";
@@ -295,7 +295,7 @@ TEST(Comparison, OnlyWhatBothHaveIsCompared) {
   EXPECT_EQ(same["rates"].size(), 30u);
   EXPECT_EQ(same["gained"].size(), 1u);
   EXPECT_TRUE(same["differences"].empty());
-  // If strata, a stratum's pairs or the shares differ, totals would differ although no rate changed.
+  // If the strata, a stratum's pairs or the shares differ, the totals would differ even if no rate changed.
   const Json others[] = {with_stratum(one, "thesis", "random", 50'000),
                          with_stratum(one, "hunt", "made from thesis", 50'000),
                          with_stratum(one, "hunt", "made from near", 5'000)};

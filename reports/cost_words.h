@@ -10,8 +10,8 @@
 
 namespace graze::reports {
 
-// Whether the quartiles are further apart than a quarter of the median, because of another program or a changing clock
-// rate. Two measurements of such a lane may differ by more than their quartiles.
+// Whether the quartiles are further apart than a quarter of the median, for example because another program ran or the
+// clock rate changed. Two such measurements of one lane may differ by more than their quartiles.
 bool is_noisy(const analysis::Cost& cost);
 
 // Whether the cost is lower and the spreads do not overlap.

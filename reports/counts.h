@@ -20,7 +20,7 @@ struct ReportLane {
   LaneName name;
   const Lane* row = nullptr;  // the lane in this build's table; null if it has no such lane
   bool exact = false;
-  std::optional<std::size_t> cpu = {};  // index of the cpu lane of the same algorithm and scalar, if it is another lane
+  std::optional<std::size_t> cpu = {};  // index of the cpu lane of the same algorithm and scalar; none for that lane
 };
 
 struct WrongCounts {

@@ -95,7 +95,7 @@ Json extremes_json(const DiscrepancyCounts& of, Axis axis) {
   return places;
 }
 
-// axis: the stratum's axis. Sums of strata have none, because strata vary different quantities.
+// axis: the stratum's axis. Sums over strata have no axis, because strata vary different quantities.
 Json counts_json(const DiscrepancyCounts& of, const std::vector<Question>& questions, std::optional<Axis> axis) {
   static const std::vector<Field> kQuestion = question_fields(), kValue = value_fields();
   Json json = object_of(kPairFields, of, 0);

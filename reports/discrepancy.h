@@ -19,7 +19,7 @@ namespace graze::reports {
 nlohmann::ordered_json discrepancy_json(const analysis::DiscrepancySpec& spec, const analysis::Discrepancies& found,
                                         const std::vector<std::optional<analysis::Origins>>& origins);
 
-// Returns two tables for each comparison: its questions over all sources, and the source lines whose contraction has
+// Returns two tables for each comparison: its questions in total, and the source lines whose contraction has
 // the largest effect.   json, here and below: the result of discrepancy_json.
 std::string discrepancy_tables(const nlohmann::ordered_json& json, const Screen& screen);
 
@@ -39,10 +39,10 @@ nlohmann::ordered_json read_discrepancy(const std::filesystem::path& file);
 std::string discrepancy_changes(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after,
                                 const Screen& screen);
 
-// Returns five sentences: on which shares of the pairs values and verdicts differ, where differences start, which lane
-// is closer to the exact values, how close to zero the values with different signs are, and the remedy. If one of these
-// is unknown, its sentence says so. Then follows a sentence for each comparison of verdicts only.   json: the contents
-// of discrepancy.json.
+// Returns five sentences: how often values and verdicts differ, where differences start, which lane is closer to the
+// exact values, how close to zero the values with different signs are, and the remedy. If one of these is unknown, its
+// sentence says so. After these, returns a sentence for each comparison of only the verdicts.
+// json: the contents of discrepancy.json.
 std::vector<std::string> discrepancy_answer(const nlohmann::ordered_json& json);
 
 // SVG pictures of how the values of two lanes differ.   of: an entry of "lanes" in discrepancy.json.

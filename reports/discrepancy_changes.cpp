@@ -83,7 +83,7 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
             {title_of(of), question, name, grouped(count.get<std::uint64_t>()), grouped(number_at(new_counts, name))});
     }
   };
-  // Compares the rows of two lists that have the same values at both keys. The first key names the row.
+  // Compares each row of the old list with the row of the new list that has the same `name` and the same `key`.
   const auto compare_rows = [&](const Json& of, const std::string& what, const Json& old_rows, const Json& new_rows,
                                 const char* name, const char* key) {
     for (const Json& row : old_rows) {

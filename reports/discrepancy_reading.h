@@ -40,7 +40,7 @@ inline int power_of(const std::string& bucket) { return std::stoi(bucket.substr(
 // Counts by the exponent of their bucket.
 using Octaves = std::map<int, std::uint64_t>;
 
-// The lowest octave such that it and all lower ones have at least this share of the counts. Nothing without counts.
+// The lowest octave that, together with all lower ones, has at least this share of the counts. Nothing without counts.
 std::optional<int> quantile(const Octaves& octaves, double share);
 
 // Reads a histogram whose buckets are all powers of 2.

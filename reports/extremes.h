@@ -19,8 +19,8 @@ inline constexpr const char* kAsRightMeans =
 std::string right_words(std::span<const analysis::ErrorsAt> points, int step);
 
 // Adds to a row of a report's extremes the fields that are computed from its cells. "origin" is the exponent of the
-// cell with which the others are compared. "says" has the words above. Each cell with errors gets "times": the ratio of
-// its share to the origin's, with a lower and an upper bound. A value of "times" is null if the origin has no errors.
+// cell with which the others are compared. "says" is the text of right_words. Each cell with errors gets "times": the
+// ratio of its share to the origin's, with a lower and an upper bound. A value is null if the origin has no errors.
 void add_right_range(nlohmann::ordered_json& row);
 
 }  // namespace graze::reports

@@ -76,7 +76,7 @@ std::string contraction(const CampaignCounts& counts, const LaneIndices& lanes) 
                      with_interval(share_of(*most->differs, total.pairs), " pairs"), from_to, how_many, uncounted);
 }
 
-// The rates were measured on 20,000,000 pairs of each reference triangle.
+// The rates were measured on 20,000,000 pairs for each reference triangle.
 constexpr const char* kRateOf2012 =
     " The thesis saw about 1 in 1,000. In its own algorithm contraction explains 1 in 3,270. The rest is unexplained: "
     "built for the x87, with the reference triangle of the thesis's special cases, it differs on 1 in 1,300. The "

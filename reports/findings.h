@@ -14,7 +14,7 @@ namespace graze::reports {
 // (own_code.h). If only such code ran, no sentence compares lanes. The next sentences name the lane to use, the lane to
 // avoid, the least wrong published lane, dangerous strata, the effect of contraction, and how often CPU and GPU differ
 // on the thesis's triangles. Open questions come last; "not settled" marks a comparison that the data does not decide.
-// Before the first pair is decided, there is one sentence.
+// Before the first pair is decided, there is only one sentence.
 // costs: null if they were not measured.   kinds: the kinds of failure; null if unknown.
 std::vector<std::string> answer(const CampaignCounts& counts, const Costs* costs,
                                 const nlohmann::ordered_json& kinds = nullptr);

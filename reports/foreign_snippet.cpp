@@ -31,7 +31,7 @@ std::string cpp_string(std::string_view text) {
   return result + '"';
 }
 
-// Calls the code through the graze_subject that `subject` points to, which has a function for one pair or for blocks.
+// Calls the code through a graze_subject, which has a function for one pair or for blocks. subject: points to it.
 std::string by_description(std::string_view real, std::string_view scalar, std::string_view subject) {
   return fmt::format(R"(static int decide(const {0}* a, const {0}* b) {{
   const struct graze_subject* subject = {2};
@@ -74,7 +74,7 @@ std::string calling(std::string_view real, std::string_view function) {
                      function);
 }
 
-// Whether the C function returns bool, in which case its caller must declare this.
+// Whether the C function returns bool. If so, the declaration in the calling program must say bool, too.
 bool returns_bool(const std::filesystem::path& source, const std::string& function) {
   std::string why;
   const std::string text = plain_file(source, why).value_or("");

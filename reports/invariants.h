@@ -24,8 +24,8 @@ std::vector<std::string> invariants_sentences(const analysis::InvariantSpec& spe
 // "case"}}}]}
 nlohmann::ordered_json invariants_json(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants);
 
-// Returns a file for each invariant that some lane breaks, as its text by its name. For each lane that breaks the
-// invariant, the file has the simplest such pair and its image, the wrongly decided pair first.
+// Returns the texts of files by name: one file for each invariant that some lane breaks. For each such lane, the file
+// has the simplest pair on which the lane breaks the invariant, and its image; the wrongly decided pair is first.
 std::map<std::string, std::string> invariants_cases(const analysis::InvariantSpec& spec,
                                                     const analysis::Invariants& invariants);
 

@@ -148,7 +148,7 @@ std::string count_of_sample(const Json& share) {
   return share.at("of") == 0 ? "-" : grouped(share.at("count")) + " of " + grouped(share.at("of"));
 }
 
-// A column after the groups, and its cell for a row.
+// A column after those of the groups: its title, and the function that returns its cell for a row.
 struct Extra {
   const char* title;
   std::string (*text)(const Json& league, const Json& row);
@@ -287,7 +287,7 @@ Json league_json(const fuzz::League& league, const std::vector<LeagueSubject>& s
                  const std::string& date) {
   Json groups = Json::object(), rows = Json::array(), failures = Json::array(), own = Json::array();
   for (std::size_t g = 0; g < fuzz::kLeagueGroupCount; ++g) {
-    std::uint64_t pairs = 0;  // pairs of a row that ran all of them
+    std::uint64_t pairs = 0;  // the number of pairs that a lane without a limit gets
     for (const fuzz::LeagueRow& row : league.rows) pairs = std::max(pairs, row.groups[g].pairs + row.groups[g].outside);
     if (pairs > 0) groups[std::string(fuzz::kLeagueGroups[g])] = pairs;
   }

@@ -26,7 +26,7 @@ inline constexpr std::size_t kMostDrawings = 40;
 //  "failures_not_repeated", "timings"}
 // Rows are sorted by the number of clearly wrong verdicts, then by the share of wrong verdicts, lowest first.
 // Everything except the timings depends only on the pairs and the code.
-// Requires: nanoseconds of each row of the league.
+// nanoseconds: per pair, one entry for each row of the league.
 nlohmann::ordered_json league_json(const fuzz::League& league, const std::vector<LeagueSubject>& subjects,
                                    const std::vector<std::optional<double>>& nanoseconds, const std::string& machine,
                                    const std::string& date);

@@ -37,7 +37,7 @@ std::string not_counted(const analysis::LaneCounts& found) {
   return text;
 }
 
-// Whether the sentence on the kind's simplest pair calls the cause not settled.
+// Whether the sentence on the kind's simplest pair says that the cause is not settled.
 bool is_open(const Json& kind) {
   return kind.at("simplest").at("sentences").at(0).get_ref<const std::string&>().find("not settled") !=
          std::string::npos;
@@ -168,7 +168,7 @@ std::vector<Json> first_kinds(const Json& kinds, const ReportLane& lane, std::si
 std::string kind_sentence(const Json& kind, const std::string& lane) {
   constexpr std::string_view kSays = ") says ";
   std::string text = kind.at("simplest").at("sentences").at(0);
-  constexpr std::string_view kUnit = " of the largest coordinate";  // left out, because the glossary defines ulps so
+  constexpr std::string_view kUnit = " of the largest coordinate";  // left out; the glossary defines ulps that way
   if (const std::size_t unit = text.find(kUnit); unit != text.npos) text.erase(unit, kUnit.size());
   const std::size_t at = text.find(kSays);
   return at == text.npos || !is_of_lane(kind.at("simplest"), lane) ? text : "It " + text.substr(at + 2);

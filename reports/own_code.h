@@ -15,7 +15,7 @@
 namespace graze::reports {
 
 // Returns one lane of each subject that is neither exact nor published: the build that its author gets by default. This
-// is the cpu lane in the first precision or, for a CUDA source, the lane with nvcc's default flags.
+// is the cpu lane in the subject's first precision or, for a CUDA source, the lane with nvcc's default flags.
 LaneIndices own_lanes(const CampaignCounts& counts);
 
 // "mine/f32/cpu is wrong on 12 (1.2 %, …) of 1,000 pairs: 10 false positives, 2 false negatives." If no verdict
@@ -87,7 +87,7 @@ struct ScreenFailure {
 };
 
 // Lays out the paragraphs in at most `most` lines, if possible, by cutting the failures' sentences. Each sentence gets
-// one line. While there is room, the sentences in turn get further lines.
+// one line; while there is room, further lines go to the sentences in turn.
 std::string one_screen(const std::vector<std::string>& before, const std::vector<ScreenFailure>& failures,
                        const std::vector<std::string>& after, const Screen& screen, int most);
 

@@ -110,8 +110,8 @@ TEST_F(PageTest, PlainPageIsWellFormedAndShowsEverything) {
 
 TEST(Page, OfManySignaturesIsUnderTenMebibytes) {
   if (!has_interactive_page()) GTEST_SKIP() << "this build has no interactive page: it takes Node and npm's packages";
-  // Every bucket has kPairs pairs. In the buckets of intersecting pairs, each lane of one subject is wrong on kWrong of
-  // its pairs.
+  // Every bucket has kPairs pairs. In each bucket of intersecting pairs, every lane of one subject is wrong on kWrong
+  // pairs.
   constexpr std::uint64_t kPairs = 19'999'999'999, kWrong = 2'345'676'000, kExponents = 70;
   constexpr std::uint64_t kSignatures = 12'000, kOfSignature = 19 * (kBucketMost + 1) * (kWrong / kSignatures);
   static_assert(kWrong % kSignatures == 0);
@@ -205,7 +205,7 @@ TEST(Page, OfManySignaturesIsUnderTenMebibytes) {
   kind["lanes"] = kind["simplest"]["lanes"] = wrong_ids;
   for (const std::string& lane : ids) kind["simplest"]["verdicts"][lane] = name(truth.verdict);
   for (const std::string& lane : wrong_ids) kind["simplest"]["verdicts"][lane] = name(Verdict::disjoint);
-  for (std::uint64_t k = 0; k < 100; ++k) {  // as if each of its lanes were wrong for many reasons
+  for (std::uint64_t k = 0; k < 100; ++k) {  // a hundred kinds, as if the lanes were wrong for many reasons
     kind["line"] = fmt::format("core/algorithms/range.h:{}", 100 + k);
     kind["key"] = fmt::format("guigue_devillers_2003/rounding/range.h:{}/general", 100 + k);
     kind["places"] = Json::array();

@@ -120,7 +120,7 @@ std::string margin_section(const Json& report) {
   return text;
 }
 
-// "up to 2^3 ulps apart", for the largest margin on that side at which verdicts differ; empty if none does.
+// "up to 2^3 ulps apart", for the largest margin on that side at which verdicts differ; empty if no verdict does.
 std::string farthest_words(const Json& row, const char* side, const char* words) {
   std::optional<int> most;
   for (const Json& point : row.at("points")) {

@@ -387,7 +387,7 @@ void expect_costs_of_kind(const Json& row, bool on_device) {
     expect(row.contains(field) == on_device, fmt::format("{} for all lanes or for none", field), row);
   for (const char* field : {"in_cache", "from_memory"})
     expect(row.contains(field) != on_device, fmt::format("{} for all lanes or for none", field), row);
-  // A user's code may take only blocks of pairs, and then has no cost of a call of one pair.
+  // If a user's code takes only blocks of pairs, there is no cost of a call of one pair.
   const Lane* lane = find_lane(row.at("lane").get<std::string>());
   expect(on_device || !lane || lane->foreign || row.contains("one_a_call"), "the cost of a call of one pair", row);
 }

@@ -33,8 +33,8 @@ namespace graze::reports {
 using fuzz::Json;
 namespace {
 
-// The machines that the campaign ran on, if their names are known. Only runs that recorded pairs count. If there are
-// none, because runs were killed after deciding their pairs, all recorded runs count.
+// The machines that the campaign ran on, if their names are known. Only runs that recorded pairs count. If no run did,
+// because each was killed after deciding its pairs, all recorded runs count.
 Json machines(const std::filesystem::path& directory) {
   std::set<std::string> names, without_pairs;
   for (const Json& run : fuzz::read_timings(directory)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests snippets as text. Also runs the Python snippet over the whole corpus, to compare its 32 axes with the oracle.
-// cli/emit.test.cpp compiles and runs the other snippets.
+// Tests snippets as text. Also runs the Python snippet, which tests 32 axes, over the whole corpus, and compares it
+// with the oracle. cli/emit.test.cpp compiles and runs the other snippets.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -84,7 +84,7 @@ Json rates(const CampaignCounts& counts) {
 std::optional<std::uint64_t> differs(const CampaignCounts& counts, const StratumCounts& stratum, std::size_t left,
                                      std::size_t right) {
   const auto left_cpu = counts.lanes[left].cpu, right_cpu = counts.lanes[right].cpu;
-  // In the comparison, a lane that never differs from the cpu lane can replace it.
+  // A lane that never differs from the cpu lane can take the cpu lane's place in the comparison.
   const bool stands_for_cpu = left_cpu && left_cpu == right_cpu && stratum.lanes[left].differs_from_cpu == 0;
   if (right_cpu != left && !stands_for_cpu) return std::nullopt;
   return stratum.lanes[right].differs_from_cpu;

@@ -30,7 +30,7 @@ nlohmann::ordered_json margins(const CampaignCounts& counts);
 // The smallest margin, a power of two in ulps, at or above which a lane was never wrong on one side of zero.
 struct Threshold {
   bool found = false;          // false: wrong at the largest margins seen, or no margins were seen
-  int exponent = 0;            // one above the largest margin's with an error; without errors, the smallest margin's
+  int exponent = 0;            // 1 above that of the largest margin with an error; else that of the smallest
   std::uint64_t above = 0;     // pairs with at least this margin
   std::optional<int> largest;  // exponent of the largest margins seen; nothing if no pair is on that side
 };

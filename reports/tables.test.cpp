@@ -56,7 +56,7 @@ TEST(Bounds, ATunedPolicysBoundIsNotRoundedToWhatWasAsked) {
   EXPECT_NE(said.find("are under 0.021, and 0.02 was asked for"), said.npos) << said;
 }
 
-// A comparison with 0 and one with any small number decide values that are exactly 0 differently.
+// A comparison with 0 treats values of exactly 0 differently from a comparison with a small number.
 TEST(Tuning, ZeroIsNotSoldAsASmallValue) {
   const subjects::TunableSource source{"mine.cpp", "", {}, {"kEps", "1e-6f", 1e-6, {{0, 0, 3}}}};
   const TuneQuestion question{"mine/f32/cpu", analysis::Forbid::any, 0.02, 0.1, &source};
@@ -123,7 +123,7 @@ TEST(Wilson, BoundOfNoneIsTheRuleOfThree) {
   EXPECT_NEAR(bound_of_none(1'000'000'000), 2.9957e-9, 1e-12);
 }
 
-// If no differences were counted, their number is null in the summary and the report. Without pairs there is no share.
+// If differences were not counted, their number is null in the summary and the report. Without pairs there is no share.
 TEST(Tables, OfNothingThereIsNoShare) {
   Json summary = summary_of({"moller_1997/f32/cuda-fma"}, {"uniform"}, {0, 3, 0, 0});
   summary["strata"]["uniform"]["intersects"] = 1000;  // so that no verdict can be a false positive
@@ -196,7 +196,7 @@ TEST(Tables, GroupsHoldEveryStratumOnceAndAddUp) {
   EXPECT_EQ(group_rates(counts).size(), 4u);
 }
 
-// A lane has its differences from cpu at each margin, as shares of the pairs there. The cpu lane itself has none.
+// A lane's differences from its cpu lane are counted at each margin, as shares of its pairs. The cpu lane has none.
 TEST(Tables, DifferencesFromCpuAreCountedByMargin) {
   const std::string fused = "moller_1997/f32/cuda-fma";
   Json summary = summary_of({"moller_1997/f32/cpu", fused}, {"uniform", "thesis"}, {0, 0, 0, 0, 0, 0, 0, 5});

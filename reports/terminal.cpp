@@ -47,7 +47,7 @@ void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
   const auto lanes = summary["spec"]["lanes"].get<std::vector<std::string>>();
   std::vector<Counts> counts(lanes.size());
   std::vector<std::optional<std::uint64_t>> differs(lanes.size());  // differences from cpu; nullopt if not compared
-  std::vector<std::optional<std::uint64_t>> stored(lanes.size());   // wrong by storing; nullopt for double lanes
+  std::vector<std::optional<std::uint64_t>> stored(lanes.size());   // errors due to storing; nullopt for f64 lanes
   for (const auto& [stratum, row] : summary["strata"].items()) {
     for (std::size_t l = 0; l < lanes.size(); ++l) {
       const Json& of = row["lanes"][lanes[l]];

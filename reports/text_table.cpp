@@ -74,7 +74,7 @@ class Printer {
     return blocks;
   }
 
-  // Whether the header is printed as a step, because it is wider than its cells.
+  // Whether the header is wider than its cells, and therefore printed as a step.
   bool is_step(std::size_t c, Headers headers) const {
     return headers == Headers::steps && width_of(columns_[c].header) > cell_widths_[c] && c > 0;
   }

@@ -75,7 +75,7 @@ std::string_view doubled_words(const TuneQuestion& q, const PolicyErrors& here, 
   return analysis::doubles(here.wrong(), there.wrong(), here.pairs) ? "errors" : words(q.forbid);
 }
 
-// Describes how many pairs would show that the rate is under the limit, if more pairs have errors at the same rate.
+// Describes how many pairs would show that the rate is under the limit, if further pairs had errors at the same rate.
 std::string pairs_to_show(const TuneQuestion& q, const Tuned& t) {
   const std::uint64_t errors = analysis::forbidden(t.confirmed, q.forbid), pairs = t.confirmed.pairs;
   if (errors == 0)

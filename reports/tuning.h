@@ -19,7 +19,7 @@ inline constexpr std::string_view kTuneForbids[] = {"false_negative", "false_pos
                                   kTuneResults[] = {"satisfied", "too few pairs", "not confirmed", "not satisfiable",
                                                     "not useful"};
 
-// The names in tune.json of the choice that changes nothing: no tolerance, or a user's epsilon as it is.
+// The names that tune.json gives to a choice that changes nothing: no tolerance, or a user's epsilon as it is.
 inline constexpr std::string_view kZero = "zero", kAsItIs = "as it is";
 
 // The tuned lane, and the goal of the tuning.
@@ -34,8 +34,8 @@ struct TuneQuestion {
 // Each sentence starts with its topic and names the pairs that its numbers describe.
 std::vector<std::string> tuning_sentences(const TuneQuestion& question, const analysis::Tuned& tuned);
 
-// Returns a table of the best tolerance of each curve. Of the pairs used to choose, it counts those that the tolerance
-// fixes, breaks and leaves wrong. Tolerances that change no verdict there are left out.
+// Returns a table of the best tolerance of each curve: on how many of the pairs used to choose it fixes the verdict,
+// breaks it, or leaves it wrong. Tolerances that change no verdict on these pairs are left out.
 std::string tuning_table(const TuneQuestion& question, const analysis::Tuned& tuned, const Screen& screen);
 
 nlohmann::ordered_json tuning_json(const TuneQuestion& question, const analysis::Tuned& tuned);

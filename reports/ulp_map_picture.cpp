@@ -70,7 +70,7 @@ struct Image {
     image.width = static_cast<png_uint_32>(width);
     image.height = static_cast<png_uint_32>(height);
     image.format = PNG_FORMAT_RGB_COLORMAP;
-    // If no foreign code fails, the palette leaves out the colours for that.
+    // If no foreign code fails, the palette leaves out the colours of its failures.
     const bool fails = std::any_of(colours.begin(), colours.end(), [](std::uint8_t c) { return c > kPaper; });
     image.colormap_entries = fails ? std::size(kPalette) : kPaper + 1;
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presents how often the verdicts of two lanes of a user's code differ, a part of the results of `graze discrepancy`.
+// Presents, for `graze discrepancy`, how often the verdicts of two lanes of a user's code differ.
 // For a CUDA source, also presents how the operands of its comparisons differ.
 #pragma once
 

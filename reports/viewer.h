@@ -13,7 +13,7 @@
 
 namespace graze::reports {
 
-// The verdict of a lane of a user's code on a pair. The page shows it because it cannot run such code.
+// The verdict of a lane of a user's code on a pair. The page shows this verdict because it cannot run such code.
 struct SaidOfPair {
   std::string lane;
   Verdict verdict;

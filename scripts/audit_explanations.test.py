@@ -31,8 +31,8 @@ PAIRS = [
     "degenerate:1:4",
     "shared_edge:1:16",
     "shared_edge:21:21",
-    # Numbers of 2^72, for which exact arithmetic needs more bits on the lane's path than on its own. Also a pair whose
-    # cause can be read from its numbers.
+    # Numbers of 2^72: in exact arithmetic, the lane's path needs more bits than the path that exact arithmetic itself
+    # takes. Also a pair whose cause can be read from its numbers.
     "extreme_scale:1:105",
     "mixed_scale:1:57",
     "extreme_scale:1:46",
@@ -60,7 +60,7 @@ class Audit(unittest.TestCase):
         for what, least in {"sentences": 20, "sets of 1": 20, "sets of 2": 2, "numbers": 15, "bits": 5}.items():
             self.assertGreaterEqual(total.get(what, 0), least, what)
 
-    # Each change makes a true explanation false. The audit must report it in every place.
+    # Each change makes a true explanation false, for one or more pairs. The audit must report each of these pairs.
     def planted(self, change):
         tried = 0
         for one in self.explained:

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks the direction of every #include, in tests and device code too. A file may include files of its own folder and
 of folders before it in the order of add_subdirectory in the root CMakeLists.txt. The same rule holds for the files that
-a folder's CMakeLists.txt lists. Their subfolders must not include each other in a cycle, except from tests, benchmarks
-and fuzz targets. Some libraries may be included by one folder only. No algorithm's header may include another
-algorithm's header. Only backends may ask what kind of machine runs a lane.
+a folder's CMakeLists.txt lists. Subfolders of one folder must not include each other in a cycle, except from tests,
+benchmarks and fuzz targets. Some libraries may be included by one folder only. No algorithm's header may include
+another algorithm's header. Only backends may ask what kind of machine runs a lane.
   check_includes.py ROOT
 """
 import fnmatch

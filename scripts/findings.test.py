@@ -38,7 +38,7 @@ the program
 {says}
 ```
 """
-# Stand-ins: npm records what it installs, or prints a setting; node prints what npm has installed, then its program.
+# Stand-ins: npm records what it installs, or prints a setting; node prints that record, then the text of its program.
 NPM = """case $1 in
   config) echo "the $3 of npm" ;;
   install) shift; case "$*" in *missing*) echo "no such package"; exit 1 ;; esac; mkdir node_modules && echo "$@" > node_modules/installed ;;

@@ -210,8 +210,8 @@ class Torture(unittest.TestCase):
                 self.assertTrue((kept / ".commands").read_text())
 
     def test_what_the_real_one_would_do_wrong_with_results(self):
-        """Replaces the program with a script around it. The real program dies with its shell, and the next run waits
-        for its end."""
+        """Replaces the program with a script around it. In kill_results, killing the script also kills the real
+        program, and the next run waits until that has ended."""
         real = SCRIPT.parents[1] / "build/bin/graze"
         if not real.exists():
             self.skipTest("no build/bin/graze")

@@ -147,7 +147,7 @@ std::string table(const std::vector<Row>& rows) {
   return text;
 }
 
-// Returns which options accept both answers on this pair; empty if none does.
+// Names the options that would accept either answer on this pair. Empty if there is none.
 std::string conventions_of(const Pair& pair, const Relation& relation) {
   constexpr std::pair<Outside, const char*> kOptions[] = {{kOutsideTouching, ".touching"},
                                                           {kOutsideCoplanar, ".coplanar"},
@@ -172,7 +172,7 @@ std::string pair_in_words(std::string_view name, const Pair& pair, const std::st
          (is_name ? std::string(name) : "YOUR_FUNCTION") + "\n";
 }
 
-// Replaces the number with the environment variable's value, if it is set.   Throws: std::invalid_argument.
+// If the environment variable is set, replaces the number with its value.   Throws: std::invalid_argument.
 void take_from_environment(const char* variable, std::uint64_t& number) {
   const char* text = std::getenv(variable);
   if (!text) return;

@@ -149,7 +149,7 @@ TEST(TestOverlap, AcceptsWhatIsAllowed) {
   EXPECT_TRUE(passes(never, {.strata = "shared_*", .pairs = 500, .shared = either}));
   EXPECT_FALSE(passes(never, {.strata = "shared_*", .pairs = 500, .touching = required}));
 
-  // The share is exact: one in ten thousand.
+  // The limit is exact: one wrong answer in ten thousand passes at 1e-4 and fails at 0.9e-4.
   int calls = 0;
   const auto once_wrong = [&calls](const float* a, const float* b) {
     return exact::intersects(a, b) != (++calls == 77);

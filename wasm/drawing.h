@@ -15,7 +15,7 @@ struct Drawing {
   Vec3<double> contact[kMost];  // the common set's extreme points, in order around it
   Vec3<double> line[2];         // the line in which the planes meet, clipped to the pair's box enlarged by half
   Vec3<double> section_a[2], section_b[2];  // the parts of that line in the triangles a and b
-  // The distance that the margin measures. For a disjoint pair, it joins the nearest points of a and b. For an
+  // The segment whose length the margin measures. For a disjoint pair, it joins the nearest points of a and b. For an
   // intersecting pair, it is the shortest translation of b that separates the pair, drawn from the middle of the
   // contact. There is no witness if an arbitrarily short translation separates the pair, or if 113 bits show no gap.
   Vec3<double> witness[2];

@@ -206,8 +206,8 @@ function check_interface() {
   assert.match(output, /cuda-fma: disjoint\n$/);
 }
 
-// The witness is as long as the margin, within the margin's bounds and the rounding of the witness's ends. For a gap,
-// its direction separates the triangles.
+// The witness's length lies within the margin's bounds, up to the rounding of the witness's ends. For a gap, the
+// witness's direction separates the triangles.
 function check_witness() {
   const found = { gap: 0, push: 0 };
   for (const stratum of graze.strata) {

@@ -121,7 +121,7 @@ GRAZE_EXPORT(lane_id) const char* lane_id(int lane) { return deciders()[lane].la
 GRAZE_EXPORT(stratum_count) int stratum_count() { return static_cast<int>(std::size(kModuleStrata)); }
 GRAZE_EXPORT(stratum_id) const char* stratum_id(int stratum) { return kModuleStrata[stratum].id.data(); }
 
-// Generates `count` pairs from the index `first`.
+// Generates `count` pairs, starting with index `first`.
 GRAZE_EXPORT(generate) void generate(int stratum, std::uint64_t seed, std::uint64_t first, int count) {
   for (int i = 0; i < count; ++i)
     draw(pairs_in[i], seed, kModuleStrata[stratum].stratum, first + static_cast<std::uint64_t>(i));

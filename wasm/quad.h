@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The compiler's long double with an error bound, as a number type for the algorithms. In WebAssembly, software
-// implements long double, with 113 bits and numbers up to 2^16383. Two numbers count as equal if their error bounds
+// implements long double, with 113 bits and exponents up to 16383. Two numbers count as equal if their error bounds
 // overlap, as in oracle/multiprecision.h.
 #pragma once
 

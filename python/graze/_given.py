@@ -20,7 +20,7 @@ class _Tested:
     def __init__(self, function: Callable[..., Any], name: str, vectorized: bool):
         self.function, self.name, self.vectorized = function, name, vectorized
         self.ended_by: Optional[BaseException] = None  # the exception that ends the test
-        self.raised: Optional[Exception] = None  # the function's first exception, a wrong answer
+        self.raised: Optional[Exception] = None  # the function's first exception; it counts as a wrong answer
 
     def of_pairs(self, pairs: np.ndarray) -> np.ndarray:
         if not self.vectorized:

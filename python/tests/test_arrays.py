@@ -115,7 +115,7 @@ class Arrays(unittest.TestCase):
             self.assertEqual(verdict, intersect(pair), graze.Pair(pair))
 
     def test_text_is_rounded_once(self):
-        middle, beyond = "1.00000005960464477539062500000", "1.00000005960464477539062500001"  # 1 + 2^-24, half an ulp
+        middle, beyond = "1.00000005960464477539062500000", "1.00000005960464477539062500001"  # 1 and half an ulp
         smallest = "0." + str(5**150).zfill(150)  # 2^-150, half the smallest float32
         words = [
             middle,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bundles the page into one file, with all chunks, style sheets and pictures, so it can be opened from disk. The report
-// is index.html; with --mode viewer, the page is view.html. GRAZE_VIEWER is set if there is a viewer, which quotes
-// source lines. graze writes the viewer's module into the page with the other data.
+// is index.html; with --mode viewer, the page is view.html. GRAZE_VIEWER is set if the build has the viewer. Only then
+// does the page contain source lines, which the viewer quotes. graze writes the viewer's module and data into the page.
 import { readFileSync, readdirSync } from 'node:fs';
 import { defineConfig } from 'vite';
 import { viteSingleFile } from 'vite-plugin-singlefile';

@@ -17,7 +17,7 @@ class Audited:
         self.floats = coordinates
         self.fractions = [Fraction(c) for c in coordinates]
         k = max(f.denominator for f in self.fractions)
-        self.integers = [int(f * k) for f in self.fractions]  # compared numbers have the same degree in k
+        self.integers = [int(f * k) for f in self.fractions]  # both sides of a comparison have the same degree in k
         self.runs, self.outcomes, self.sets = {}, {}, {}
         self.contact, self.distance_squared, corners = contact_and_distance(self.fractions)
         self.inside = inside(self.fractions, self.contact, corners)

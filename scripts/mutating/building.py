@@ -16,7 +16,7 @@ import threading
 from mutating import tokens
 
 NOT_SWITCHED = 98  # exit status, as in switches.h
-# A subscript out of range ends the test. Otherwise it might read any value.
+# A subscript out of range ends the test. Without these checks, the test might read any value.
 CHECKED = ["-w", "-D_GLIBCXX_ASSERTIONS", "-fsanitize=bounds-strict,object-size", "-fsanitize-undefined-trap-on-error"]
 MEMORY = 8 << 30  # bytes of address space for each compiler and test
 
@@ -263,8 +263,8 @@ class Runner:
         return "survived", ""
 
     def compile_switched(self, group, file, source, text, numbered, folder):
-        """Removes from `numbered` the mutants, or all mutants of the lines, that the compiler rejects.   Throws:
-        NotCompiled."""
+        """Removes from `numbered` the mutants that the compiler rejects. If its messages name only lines, removes all
+        mutants near these lines.   Throws: NotCompiled."""
         while True:
             (folder / file).write_text(tokens.switched(text, numbered), encoding="utf-8")
             try:

@@ -90,7 +90,7 @@ GRAZE_ASSIGNMENT(-=, +=)
 GRAZE_ASSIGNMENT(&=, |=)
 GRAZE_ASSIGNMENT(|=, &=)
 
-// Switches before a unary operator. ->* binds the operator's result more tightly than the other binary operators do.
+// Switches at a unary operator, as in Not<7>{}->*!x. The right operand of ->* is the unary expression, nothing more.
 template <int id>
 struct Not {};
 template <int id>

@@ -8,7 +8,7 @@ from presenting.records import plain
 
 WIDTH, LEFT, RIGHT = 380, 12, 12
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-# Every figure has the same style, so that a page can contain several figures.
+# All figures have the same style, because in a page with several figures, the style of each applies to all.
 LIGHT = (
     ".figure .ground{fill:#fff}.figure text{fill:#1f2328;paint-order:stroke;stroke:#fff;stroke-width:3px}"
     ".figure .faint{fill:#59636e}.figure .axis{stroke:#59636e}.figure .grid{stroke:#d1d9e0}"

@@ -75,7 +75,7 @@ def digits(x, n=3, towards=None):
 
 
 def count(x):
-    """A number as its record has it."""
+    """A number, written as in its record."""
     return backed(measurements.text(x))
 
 

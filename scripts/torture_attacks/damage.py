@@ -89,7 +89,7 @@ def judge(turn, campaign):
     refused = turn.run(*command)
     if turn.is_refused(refused, DATABASE, campaign.name + ": it holds results but not their database"):
         went_on = turn.run(*command, "--discard-damaged")
-        # Another program's database, or results without a database, are no damage. The message says what to do.
+        # Another program's database, or results without one, do not count as damage. The message says what to do.
         if not (turn.is_refused(went_on, campaign.name) and "choose another --out" in went_on.err):
             turn.must_succeed(went_on)
             turn.must_be_same(campaign, turn.bench.reference("small"))

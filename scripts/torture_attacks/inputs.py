@@ -10,7 +10,7 @@ from torture_attacks.bench import Violation
 ATTEMPTS = 12
 PROJECT = pathlib.Path(__file__).resolve().parents[2]
 LANES = ["--lanes", "guigue_devillers_2003/f32/cpu,interval_overlap/f32/cpu"]
-# A name that is not UTF-8 cannot appear in a message, which is UTF-8.
+# A name that is not UTF-8 cannot appear in a message, because messages are UTF-8.
 NAMES = ["mutated", "mutated", "mutated", "with space", "umläut", b"\xff", "a:b:c", "-"]
 
 
@@ -191,7 +191,7 @@ def json(turn):
         if file.suffix == ".json" and turn.random.random() < 0.6:
             data = mutate.edit_json(turn.random, data)
             value = seal.loads(data)
-            if value.pop("checksum", None) is not None and turn.random.random() < 0.7:  # past the checksum
+            if value.pop("checksum", None) is not None and turn.random.random() < 0.7:  # seal the edit
                 data = seal.text(value).encode(errors="surrogatepass")
         else:
             data = mutate.any_of(turn.random, data, mutate.TEXT)

@@ -13,10 +13,10 @@ from torture_attacks.bench import Violation, must_agree
 from torture_attacks.interruptions import finish_both, made_read_only, small_disk
 
 ATTEMPTS = 3  # verbs in a round
-# JSON keys of times, and the checksum, which covers these too.
+# JSON keys whose values depend on times, including the checksum.
 TIMED = set("machine date near far in_cache from_memory one_a_call dominated sentences costs nanoseconds ns".split())
 TIMED |= {"updated", "checksum"}
-# Files that are not compared, like those that accompany a database.
+# Files that are not compared. SQLite's files beside the database are not compared either.
 ASIDE = {"front.svg", "league.md", "timings.json", "status.json", "campaign.sqlite"}
 SUBJECT = "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }\n"
 
@@ -282,7 +282,7 @@ def forged_kinds(turn):
 
 
 def unsealed(turn):
-    """Changes a text, which no count contradicts. In every kind of file, the checksum must reveal the change."""
+    """Changes a text, so that all counts still agree. In every kind of file, the checksum must reveal the change."""
     reported = turn.bench.reference("tiny", minimised=True, reported=True)
     maps = turn.random.choice(sorted((reported / "cases").glob("*.maps.json"))).relative_to(reported).as_posix()
     page = ["report", "--from", "report.json", "--out", "page.html"]

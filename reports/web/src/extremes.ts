@@ -28,7 +28,7 @@ const ratio = ({ times }: Cell) => `${times[0] === null ? 'at least ' : ''}${fig
 const bounds = ([, low, high]: Times) =>
   high === null ? `95 %: ${figure(low)} and more` : `95 %: ${figure(low)} to ${figure(high)}`;
 
-// A cell with fewer pairs than this is drawn thin, because its rate may be a coincidence.
+// A cell with fewer pairs than this is drawn thin, because its rate may be due to chance.
 const kFew = 100;
 const few = ({ wrong }: Cell) => wrong.of < kFew;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The colours of shares: magma (van der Walt and Smith 2015), perceptually uniform and suitable for colour-blind
-// readers. The scale is the cube root of the share, so that rates near 10^-4 and rates near 1/2 can both be told apart.
+// readers. The scale is the cube root of the share, which keeps differences visible both near 10^-4 and near 1/2.
 // Each step is a class and a custom property, so dark mode needs only CSS. The worst share is the darkest colour on a
 // white page, and the brightest on a dark page.
 import { interpolateMagma } from 'd3-scale-chromatic';

@@ -14,9 +14,9 @@ export interface Share {
 export type Times = [number | null, number, number | null];
 
 // The smallest margin (in ulps, a power of two) at or above which no error was seen; if there was no error, the
-// smallest margin seen. `bound`: the 95 % upper bound of the error rate on the `above` pairs beyond it, 1 - 0.05^(1/n).
-// exponent is null if errors were seen up to the largest margin, 2^largest. largest is null if no pair is on that side
-// of zero.
+// smallest margin seen. `bound`: the 95 % upper bound of the error rate on the `above` pairs with such margins,
+// 1 - 0.05^(1/n). exponent is null if errors were seen up to the largest margin, 2^largest. largest is null if no pair
+// is on that side of zero.
 export interface Threshold {
   exponent: number | null;
   above: number;
@@ -157,8 +157,8 @@ export interface Report {
     stored?: number; // pairs of doubles on which the lane is wrong because float32 stores another pair
   }[];
   group_rates: { lane: number; group: number; wrong: Share; false_positive?: Share; false_negative?: Share }[];
-  // Pairs of lanes of one algorithm. `differs` is a count pair by pair; null if that is unknown. A null stratum means
-  // all strata together, as in `rates`.
+  // Pairs of lanes of one algorithm. `differs` is the share of pairs with different verdicts; null if unknown. A null
+  // stratum means all strata together, as in `rates`.
   side_by_side: {
     kind: 'cpu-nofma' | 'nofma-fma' | 'f32-f64';
     left: number;
@@ -203,7 +203,7 @@ export interface Report {
   }[];
   signature_count: number; // all signatures; `signatures` has the most frequent ones
   signatures: {
-    // one for each signature that fits, most frequent first
+    // one for each signature that fits the page, most frequent first
     key: string;
     algorithm: string;
     count: number;

@@ -19,7 +19,7 @@ export interface Table<Row> {
   columns: (columns: Column<Row>[]) => void;
 }
 
-// A column of counts; a count that is undefined is not known.
+// A column of counts; undefined means that the count is not known.
 export const counts = <Row>(label: string, of: (row: Row) => number | undefined): Column<Row> => ({
   label,
   numeric: true,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// node tests/picture.mjs REPORT.html CARD OUT.png: the README's picture of a card and the league table's cpu lanes.
+// node tests/picture.mjs REPORT.html CARD OUT.png: the tour's picture of a card and the league table's cpu lanes.
 import { execSync } from 'node:child_process';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';

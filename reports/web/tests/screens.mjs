@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// node tests/screens.mjs PAGE.html DESKTOP.png PHONE.png: screenshots for the documents of the top of a report or a
-// viewer.
+// node tests/screens.mjs PAGE.html DESKTOP.png PHONE.png: screenshots of the top of a report or a viewer, for the
+// documents.
 import { execSync } from 'node:child_process';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';

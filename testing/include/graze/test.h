@@ -67,7 +67,7 @@ TestResult test_pairs(std::string_view name, const DecidePairs& decide, const Te
 std::string fault_of(const Pair& pair, Verdict verdict, const TestOptions& options = {});
 
 // Wraps f for test_overlap. f takes two triangles as arrays of float or double, const T a[9], and returns bool or int.
-// Doubles get exactly the floats' values.
+// If f takes doubles, they have exactly the floats' values.
 template <class F>
 std::function<int(const float*, const float*)> overlap_of(F f) {
   if constexpr (std::is_invocable_v<F&, const float(&)[9], const float(&)[9]>) {

@@ -52,7 +52,7 @@ export function to_bits(pair: Coordinates): string {
     : Array.from(new Uint32Array(buffer), (word) => word.toString(16).padStart(8, '0')).join('');
 }
 
-// The coordinate type of a pair in a link, from the number of hex digits; null if they are not a pair's.
+// The coordinate type of a pair in a link, from the number of hex digits; null for a text that is not a pair.
 export const type_of_bits = (bits: string): Scalar | null =>
   /^([0-9a-f]{144}|[0-9a-f]{288})$/.test(bits) ? (bits.length === 288 ? 'f64' : 'f32') : null;
 

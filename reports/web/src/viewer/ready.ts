@@ -16,7 +16,7 @@ export interface Ready {
   said: string;
 }
 
-// Returns the module after it has decided the stored pairs.   Throws: its differences from the native build, as text.
+// Returns the module after it has decided the stored pairs.   Throws: how it differs from the native build, as text.
 export async function make_ready(stored: Stored): Promise<Ready> {
   const module = await module_of(stored.module),
     graze = await load(module),

@@ -64,7 +64,7 @@ const Example kExamples[] = {
 class EveryHostLane : public testing::TestWithParam<const Lane*> {};
 
 TEST_P(EveryHostLane, IsRightOnHandExamplesInAllOrders) {
-  // -ffast-math assumes that no value is NaN. interval_overlap divides zero by zero, so it is wrong on small integers.
+  // -ffast-math assumes that no value is NaN, but interval_overlap divides 0 by 0. It is then wrong on these pairs.
   if (info_of(GetParam()->variant).arithmetic == Arithmetic::fast) GTEST_SKIP() << "fast math promises nothing";
   for (const Example& example : kExamples) {
     if (example.projection_overlaps && GetParam()->info->id == "projected_sat") continue;
@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(Lanes, EveryHostLane, testing::ValuesIn(host_lanes()), 
   return id;
 });
 
-// As in its callers, one function converts in both directions; see stored_in_float32.
+// Like the callers, converts in both directions in one function. GCC 12 may miscompile that; see stored_in_float32.
 TEST(Pair, StoringInFloat32RoundsEveryNumber) {
   for (int n = 1; n < 100; ++n) {
     DoublePair pair;

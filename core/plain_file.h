@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads files without blocking: not for a pipe's writer, nor for a file that has no data yet, such as /proc/kmsg.
-// Callers cannot rule these out, because a name may refer to another file by the time it is opened.
+// Reads files without blocking: does not wait for a pipe's writer or for a file that has no data yet (/proc/kmsg).
+// Callers cannot rule out such files, because a name may refer to another file by the time it is opened.
 #pragma once
 
 #include <cstddef>

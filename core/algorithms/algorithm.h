@@ -17,7 +17,7 @@ struct AlgorithmInfo {
   std::string_view degenerate;         // what its paper says about segments and points
   std::string_view order;              // whether the verdict can depend on the order of triangles and vertices
   bool rounding_free_on_lattice;       // neither divides nor takes roots
-  bool right_without_rounding = true;  // if every operation were exact, on all pairs of proper triangles
+  bool right_without_rounding = true;  // on all pairs of proper triangles, if every operation is exact
 };
 
 inline namespace GRAZE_FP {

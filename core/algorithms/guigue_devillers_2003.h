@@ -10,8 +10,8 @@ namespace graze {
 inline namespace GRAZE_FP {
 namespace guigue_devillers_2003 {
 
-// The vertex order that puts the lone vertex first: alone on its side of the other triangle's plane, or alone in that
-// plane. flip: whether to turn the other triangle over, so that the first vertex has the largest signed distance.
+// The vertex order that puts the lone vertex first: the vertex alone on its side of the other triangle's plane, or
+// alone in that plane. flip: turn the other triangle over, so that this vertex has the largest signed distance.
 struct Canonical {
   int first;  // 0, 1 or 2; -1 if all three vertices lie in the plane
   bool flip;

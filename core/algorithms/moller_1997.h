@@ -10,7 +10,7 @@ namespace graze {
 inline namespace GRAZE_FP {
 namespace moller_1997 {
 
-// Whether segments pq and rs share a point. Parallel segments never do; other edges show that intersection.
+// Whether segments pq and rs share a point. False for parallel segments: if they overlap, other edges cross.
 template <class Real, class Policy>
 GRAZE_HD bool segments_cross(Vec2<Real> p, Vec2<Real> q, Vec2<Real> r, Vec2<Real> s, const Policy& policy,
                              int question) {
@@ -61,7 +61,7 @@ GRAZE_HD bool coplanar_intersect(const Vec3<Real>& normal, const Vec3<Real> (&a)
   return strictly_inside(u[0], v, policy, 35) || strictly_inside(v[0], u, policy, 38);
 }
 
-// The part of the common line in a triangle, scaled: it ends at `at + p / x0` and `at + q / x1`.
+// The part of the common line in a triangle: on the line's largest axis, it ends at `at + p / x0` and `at + q / x1`.
 template <class Real>
 struct Section {
   Real at, p, q, x0, x1;
@@ -133,7 +133,7 @@ struct Moller1997 {
   template <class Questions>
   static void list(Questions& questions) {
     questions.plane_distances();
-    questions.overlap(13, "sections");  // each is multiplied by four differences of distances
+    questions.overlap(13, "sections");  // a length times four differences of distances, each of degree 3
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
         for (const char* of : {"f", "d", "e"}) questions.own(2, "edges", i, j, of);

@@ -12,15 +12,15 @@ namespace graze {
 inline constexpr int kMostQuestions = 64, kMostChoices = 15;
 
 // Memory for the values of a run: value k of question q is at values[(2 q + k) * stride]. A question about one value
-// has k = 0; a comparison of two values has the left one at k = 0 and the right one at k = 1.
+// uses only k = 0; a comparison of two values has the left one at k = 0 and the right one at k = 1.
 template <class Real>
 struct Recorded {
   Real* values;
   std::uint64_t stride;
 };
 
-// `asked` has one bit for each question that was asked. Bits 4 k to 4 k + 3 of `path` are choice k plus 1, and bits 60
-// to 63 are the verdict plus 1.
+// `asked` has one bit for each question that was asked. Bits 4 k to 4 k + 3 of `path` hold 1 + choice k, and bits 60
+// to 63 hold 1 + the verdict.
 struct RecordedPath {
   std::uint64_t asked = 0, path = 0;
 };

@@ -104,9 +104,9 @@ struct Recorder {
 };
 
 // `none`: every operation rounds. Otherwise a sum or difference fuses a product with the addition. If both terms are
-// products, `left` fuses the left one, as g++ does if it contracts at all. `nvcc` fuses the one with fewer uses, or the
-// left one on a tie, like cuda/twin/generator/contraction.cpp. It fuses neither if both scale by a quotient: nvcc moves
-// that addition to another block (only in interval_overlap's common_line). The rules can fail: compare with the lane.
+// products, `left` fuses the left one, like g++ if it contracts. `nvcc` fuses the one with fewer uses, or the left one
+// on a tie, like cuda/twin/generator/contraction.cpp. It fuses neither if both multiply by a quotient: nvcc moves that
+// addition to another block (only in interval_overlap's common_line). The rules can be wrong: compare with the lane.
 enum class Contraction { none, left, nvcc };
 
 inline namespace GRAZE_FP {
@@ -203,7 +203,7 @@ struct Traced {
   }
 };
 
-// A policy that compares exactly, like ExactZero, and records.
+// A policy that compares exactly, like ExactZero, and records what it is asked.
 struct TracingPolicy {
   template <class Number, Contraction contraction>
   Traced<Number, contraction> snap(Site site, const Traced<Number, contraction>& n,
@@ -225,7 +225,7 @@ struct TracingPolicy {
   }
 };
 
-// Runs the algorithm (an index into Algorithms) on the pair, rounded to these numbers, and forces it to take the path.
+// Runs the algorithm (an index into Algorithms) on the pair, rounded to Number, and forces it to take the path.
 template <class Number, Contraction contraction = Contraction::none, class Coordinate>
 Trace<typename Recorder<Number>::Kept> run_traced(int algorithm, const BasicPair<Coordinate>& pair,
                                                   const Path& lead = {}) {

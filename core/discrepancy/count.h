@@ -21,9 +21,9 @@ enum : int {
   equal,                           // the same bits, or both are NaN
   zero_sign,                       // zeros of different signs
   not_finite,                      // other differences; at least one value is not finite
-  below,                           // kOctaves: the second lane's finite value is 2^k to 2^(k+1) ulps lower
-  above = below + kOctaves,        // kOctaves: the same, but higher
-  first_error = above + kOctaves,  // kErrors: the first lane's error, see error_bucket
+  below,                           // kOctaves counts; in count k, the second lane's value is 2^k to 2^(k+1) ulps lower
+  above = below + kOctaves,        // kOctaves counts: the same, but higher
+  first_error = above + kOctaves,  // kErrors counts: the first lane's error, see error_bucket
   second_error = first_error + kErrors,
   nearer_first = second_error + kErrors,  // the values differ, and the first lane's is nearer to the exact value
   nearer_second,
@@ -47,9 +47,9 @@ enum : int {
   zero_on_one_side,
   outcome,  // the comparison's result differs; for a question about one value, the sign differs
   verdict,  // the verdicts differ, and this is the first question with a different outcome
-  band,     // kBands: the sign differs, and the larger of both magnitudes is between 2^(k + kLowestBand) and twice that
-            // many error bounds; the first band has no lower limit. No magnitude exceeds two bounds, because the values
-            // have different signs and each is within one bound of the exact value
+  band,     // kBands counts; in count k, the sign differs, and the larger of both magnitudes is 2^(k + kLowestBand) to
+            // twice that many error bounds; the first band has no lower limit. No magnitude exceeds two bounds, because
+            // the values have different signs and each is within one bound of the exact value
   band_unknown = band + kBands,  // the error bound is infinite or NaN
   kFields
 };

@@ -70,7 +70,7 @@ struct Led {
     result.lane = -x.lane;
     return result;
   }
-  // If the lane compared both factors, as in d0 * d1 > 0, it also knows their product: contraction cannot change it.
+  // If the lane compared both factors, as in d0 * d1 > 0, their product is known too: contraction cannot change it.
   GRAZE_HD GRAZE_CALLED friend Led operator*(const Led& l, const Led& r) {
     const double moved = size_of(l.exact) * r.rounding + size_of(r.exact) * l.rounding + l.rounding * r.rounding;
     Led result(l.exact * r.exact, l, r, moved, l.is_zero() || r.is_zero() ? 0 : kLost);
@@ -108,7 +108,7 @@ struct Led {
 
   // Values that the lane did not record, such as the least of several distances, are compared exactly. If their order
   // is in doubt, the wrong choice is off by at most the distance between them. The lane may have chosen the other
-  // value, so both get the larger rounding, which also bounds that of a minimum or maximum.
+  // value, so both get the larger `rounding`, which then also holds for their minimum or maximum.
   template <class Comparison>
   GRAZE_HD GRAZE_CALLED static bool compare(const Led& l, const Led& r, const Comparison& comparison) {
     if (l.was_seen && r.was_seen) return comparison(l.lane, r.lane);

@@ -69,7 +69,7 @@ GRAZE_HD void look_in_plane(const Triangles<Numbers>& t, typename Numbers::D Vec
 }
 
 // Examines the axes that suffice if D lies in a plane through the origin, with normal n. Dropping a coordinate whose
-// axis is not perpendicular to n keeps D's shape, and D's edges are edges of a and b. If n is zero, D is a segment or a
+// axis is not perpendicular to n does not flatten D; D's edges are edges of a and b. If n is zero, D is a segment or a
 // point, and some projection or some coordinate shows whether the origin is outside D.
 template <class Numbers>
 GRAZE_HD void look_flat(const Triangles<Numbers>& t, const NormalOf<Numbers>& n, AxisEvidence& seen) {

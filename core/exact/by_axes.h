@@ -39,8 +39,8 @@ GRAZE_HD void directions(const Vec<D> (&v)[3], unsigned mask, Vec<D>& first, Vec
   second = mask & 4 ? v[2] - v[from] : v[0] - v[0];
 }
 
-// If a and b intersect, the origin lies inside one face F of D. F is the difference of a face A of a and a face B of b,
-// whose interiors meet. The common set of a and b is that of A and B; its dimension is dim A + dim B - dim F.
+// If a and b intersect, the origin lies inside one face F of D. F is the difference of a face A of a and a face B of b;
+// the interiors of A and B meet. The common set of a and b is that of A and B; its dimension is dim A + dim B - dim F.
 template <class Numbers>
 GRAZE_HD Relation by_axes(const Triangles<Numbers>& t) {
   const AxisEvidence seen = look<Numbers>(t);

@@ -30,7 +30,7 @@ GRAZE_HD typename Numbers::T determinant(const VecOf<Numbers>& o, const VecOf<Nu
 }
 
 // Whether the line of a segment p crosses triangle q, which is proper. p has vertices on both sides of q's plane, or in
-// the plane and on one side. The line crosses q if no two of q's edges lie on different sides of it.
+// the plane and on one side. The line crosses q if it passes no two of q's edges on different sides.
 template <class Numbers>
 GRAZE_HD Finding by_line(const VecOf<Numbers> (&p)[3], const Sides& of_p, const VecOf<Numbers> (&q)[3],
                          const Numbers& numbers) {

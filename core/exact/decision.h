@@ -22,7 +22,7 @@ GRAZE_HD T component(const Vec<T>& v, unsigned axis) {
   return pick(v.x, v.y, v.z, axis);
 }
 
-// A vertex without its component along an axis. If the normal's component is positive, the triangle turns left.
+// A vertex projected along an axis. If the normal's component along that axis is positive, the triangle turns left.
 template <class D>
 struct Flat {
   D x, y;
@@ -80,7 +80,7 @@ GRAZE_HD bool segments_meet(const Triangles<Numbers>& t) {
   const VecOf<Numbers> of_a = along(t.a), of_b = along(t.b), between = t.b[0] - t.a[0];
   const NormalOf<Numbers> n = cross<M>(of_a, of_b);
   if (!is_zero(n)) return dot<typename Numbers::T>(n, between) == typename Numbers::T(0) && meet_in_plane(t, n, n, n);
-  // The segments are parallel, or one is a point. On one line, they intersect if their coordinates' ranges overlap.
+  // The segments are parallel, or one is a point. If one line holds both, they meet if their coordinate ranges overlap.
   const bool a_is_point = same(t.a[1], t.a[0]) && same(t.a[2], t.a[0]);
   if (!is_zero(cross<M>(a_is_point ? of_b : of_a, between))) return false;
   for (unsigned axis = 0; axis < 3; ++axis) {
@@ -176,8 +176,8 @@ GRAZE_HD bool relation_of(Finding found, const Real* a, const Real* b, Relation&
   return found == Finding::crosses || (found == Finding::disjoint && both_proper(a, b));
 }
 
-// The relation of pairs in general position: they cross, a plane or an edge of each separates them, or they share
-// a vertex.   Returns: false if rounding leaves the relation in doubt.
+// The relation of a pair in general position: the triangles cross, share a vertex, or are separated by the plane of one
+// of them or by a plane along an edge of each.   Returns: false if rounding leaves the relation in doubt.
 template <class Real>
 GRAZE_HD bool relate_quickly(const Real* a, const Real* b, Relation& r) {
   const Finding found = filter(a, b);

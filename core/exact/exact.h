@@ -49,7 +49,7 @@ GRAZE_HD Relation relation(const Real* a, const Real* b) {
 
 }  // namespace detail
 
-// Whether the closed triangles a and b, three vertices x y z each, share a point. `stage`: which numbers decided.
+// Whether the closed triangles a and b, given as three vertices x y z, share a point. `stage`: which numbers decided.
 // Requires: finite coordinates.   Exact: always.
 GRAZE_HD inline bool intersects(const float* a, const float* b, Stage* stage = nullptr) {
   return detail::intersects(a, b, stage);

@@ -235,7 +235,7 @@ TEST(Exact, KindsOfNumbersAgree) {
     ASSERT_EQ(by_axes(triangles<WideNumbers>(a, b)), r) << i;
     ASSERT_EQ(decide<DoubleNumbers>(a, b, 0), r.intersects()) << i;
     ASSERT_EQ(decide<WideNumbers>(a, b, 0), r.intersects()) << i;
-    // by_planes finds `crosses` exactly if no vertex is in the other's plane and the triangles do more than touch.
+    // by_planes returns `crosses` if and only if no vertex is in the other's plane and the triangles more than touch.
     const Triangles<DoubleNumbers> t = triangles<DoubleNumbers>(a, b);
     const Finding found = by_planes(t);
     const bool apart_from_planes = (sides(t.a, normal<DoubleNumbers>(t.a), t.b, DoubleNumbers()).in |
@@ -249,7 +249,7 @@ TEST(Exact, KindsOfNumbersAgree) {
 }
 
 // Grids up to the widest that residues hold. Coordinates have 24 bits; some are shifted by up to 10 bits. Triangles lie
-// exactly or nearly in each other's planes, so determinants are zero, much smaller than their products, or of 108 bits.
+// exactly or nearly in each other's planes, so determinants are zero, far below their products, or 108 bits wide.
 TEST(Exact, ResiduesDecideAsIntegersOf128Bits) {
   std::mt19937_64 random(9);
   long by_contact[4] = {}, widest = 0, pairs = 0;
@@ -349,7 +349,7 @@ TEST(Exact, SegmentsOfAnySizeMeetTrianglesAsTheAxesSay) {
   EXPECT_GT(by_contact[1], 100);
 }
 
-// Compares products of 35-bit differences: equal ones, ones as close as possible, and ones that differ in doubles.
+// Compares products of two 35-bit differences: equal products, the closest ones, and products that differ in doubles.
 TEST(Exact, ResiduesKnowTheSignsOfMinors) {
   using detail::Whole;
   std::mt19937_64 random(12);

@@ -10,7 +10,7 @@ namespace graze::exact::detail {
 
 enum class Answer { no, yes, unknown };
 
-// Whether the line crosses the triangle q: no two of q's edges lie on different sides of the line.
+// Whether the line crosses the triangle q: it passes no two of q's edges on different sides.
 template <class Numbers>
 GRAZE_HD Answer line_crosses(const VecOf<Numbers>& from, const VecOf<Numbers>& to, const VecOf<Numbers> (&q)[3],
                              const Numbers& numbers) {

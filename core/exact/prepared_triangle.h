@@ -5,9 +5,9 @@
 //
 // The slabs are the thinnest ones: perpendicular to the triangle's normal and, within its plane, to its longest edge.
 // Their directions may be rounded in any way, because the reference's extent is computed along the stored direction.
-// Let |d| <= 1/4 be the sum of the magnitudes of the direction d, and m the triangle's largest magnitude. A height d .
-// v - middle is off by less than 4.001 2^-23 (|d| m + |middle|) in any rounding mode, and by 2^-146 if something
-// underflows; nothing overflows.
+// For a direction d, let |d| <= 1/4 be the sum of its components' magnitudes, and m the triangle's largest magnitude. A
+// height d . v - middle is off by less than 4.001 2^-23 (|d| m + |middle|) in any rounding mode, plus 2^-146 if
+// something underflows; nothing overflows.
 #pragma once
 
 #include <algorithm>

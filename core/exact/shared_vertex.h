@@ -24,7 +24,7 @@ GRAZE_HD int shared_vertex(const Real* a, const Real* b) {
 // The relation of two triangles with a common vertex. Let p be the signs of the heights of b's other vertices over a's
 // plane, and q those of a's over b's. If some plane through the vertex separates the triangles, they meet only in the
 // vertex; otherwise they meet in a segment that ends there. Candidates are a's plane (p1 == p2), b's plane (q1 == q2),
-// and planes through an edge of each, whose determinants are the same four numbers.
+// and the planes through an edge of each triangle; their determinants are the same four numbers.
 // Returns: false if a sign is in doubt.
 template <class Real>
 GRAZE_HD bool relate_at_vertex(const Real* a, const Real* b, int shared, Relation& r) {

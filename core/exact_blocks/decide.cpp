@@ -40,7 +40,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #include "core/exact_blocks/doubles-inl.h"
 
-constexpr std::size_t kChunk = 512;  // the most pairs among which undecided pairs are gathered
+constexpr std::size_t kChunk = 512;  // the most pairs in a chunk, from which a step gathers its pairs
 template <class Real>
 constexpr std::size_t kChunkOf = kChunk * sizeof(float) / sizeof(Real);  // a chunk has 36 KB
 constexpr unsigned kAll = (1u << kAtOnce) - 1;

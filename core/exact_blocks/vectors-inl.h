@@ -157,7 +157,7 @@ HWY_INLINE Turned turned(const Three<Double> (&v)[3], const M (&below)[3], M oth
           chosen(other_is_below, next, last)};
 }
 
-// Whether the lone vertex of three is below. The other two are equal and cancel.   Requires: not all three are equal.
+// Whether the lone vertex is below. The other two, on the other side, cancel.   Requires: not all on the same side.
 HWY_INLINE M alone_is_below(const M (&below)[3]) { return hn::Xor(hn::Xor(below[0], below[1]), below[2]); }
 
 // The difference of two vertices, in this kind of numbers.
@@ -253,8 +253,8 @@ struct OnGrid {
     // The scale depends on the largest coordinate, or on this number if all coordinates are smaller.
     auto largest = hn::Set(pairs.tag, sizeof(Real) == sizeof(float) ? Real(0x1p-126) : Real(0x1p-900));
     for (const auto& c : pairs.x) largest = hn::Max(largest, hn::Abs(c));
-    // Scaled values stay below 2^bits_of_grid. It suffices that the largest value is at least half of that. If its
-    // exponent is e, the scale is 2^(bits_of_grid - 1 - e).
+    // Scales the largest value into [2^(bits_of_grid - 1), 2^bits_of_grid). If its exponent is e, the scale is
+    // 2^(bits_of_grid - 1 - e).
     const VI exponent = hn::And(hn::BitCast(di, widened(largest)), hn::Set(di, std::int64_t{0x7ff} << 52));
     const V scale = hn::BitCast(d, hn::Sub(hn::Set(di, std::int64_t{2 * 1023 + bits_of_grid - 1} << 52), exponent));
     M whole = hn::Eq(scale, scale);
@@ -334,7 +334,7 @@ struct FromFirst {
   }
 };
 
-// Bit i is set if an axis separates pair i. It uses the axes of look and look_flat in core/exact/axes.h.
+// Bit i is set if an axis separates pair i. The axes are those of look and look_flat in core/exact/axes.h.
 template <class T>
 HWY_INLINE unsigned separated(const OnGrid& pair) {
   const FromFirst<T> seen(pair);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides with one lane under many tolerances, for sweeps. A pair is decided again only if some outcome changes.
+// Decides with one lane under many tolerances, for sweeps. A pair is decided again only if a comparison changes.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A policy, the last part of a lane's name, determines how a published algorithm compares with zero. A policy's numbers
 // are read at run time, so sweeps need no compiler.
-//   abs:E        values smaller than E count as zero, in the unit of the quantity compared (mostly lengths cubed)
+//   abs:E        values below E count as zero; E has the unit of the quantity compared (mostly lengths cubed)
 //   rel:K        like abs:E, with E = K times machine epsilon times the quantity's size (core/lanes/with_magnitude.h)
 //   SITE=abs:E,SITE=rel:K   tolerances at these sites only; the other sites compare with zero
 //   paper        the tolerances of the algorithm's published code

@@ -7,7 +7,7 @@
 
 namespace graze {
 
-// A site's tolerance is `absolute`, in the quantity's unit, plus `relative` times machine epsilon times its size.
+// A site's tolerance: `absolute`, in the quantity's unit, plus `relative` * machine epsilon * the quantity's size.
 struct Epsilons {
   double absolute[kSiteCount] = {};
   double relative[kSiteCount] = {};

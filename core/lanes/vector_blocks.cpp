@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Separating axes (core/algorithms/separating_axes.h) with one pair in each vector lane. The verdict does not depend on
-// the order of the axes, so the code need not branch. This file is compiled for each instruction set with Google
-// Highway, which chooses the best one at run time. No operation is contracted.
+// the order of the axes, so the code tests all of them and need not branch. This file is compiled for each instruction
+// set with Google Highway, which chooses the best one at run time. No operation is contracted.
 #ifdef __wasm__
 #include "core/lanes/vector_blocks.h"
 

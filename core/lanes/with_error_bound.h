@@ -148,8 +148,8 @@ GRAZE_HD int dominant_axis(const Vec3<WithErrorBound<Real>>& v) {
   return axis;
 }
 
-// The least and the greatest of three exact quantities are within the largest of the three bounds of the least and the
-// greatest value, whichever quantities they are.
+// The least of three exact quantities differs from the least of their values by at most the largest of the bounds, even
+// if it belongs to another value. The same holds for the greatest.
 template <class Real>
 GRAZE_HD Range<WithErrorBound<Real>> project(const Vec3<WithErrorBound<Real>>& direction,
                                              const Vec3<WithErrorBound<Real>> (&v)[3]) {

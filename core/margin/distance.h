@@ -14,8 +14,8 @@ namespace graze {
 inline namespace GRAZE_FP {
 
 // Lower bound on the distance: the separation along any direction is at most the distance. The computed direction d
-// counts as exact, and all points are relative to a vertex of its feature. Each vertex then has an error of (1 for the
-// difference, 3 roundings) kRoundoff sum(|n| * |difference|); 6 leaves slack.
+// counts as exact, and all points are relative to a vertex of its feature. A vertex's projection has an error of (1 for
+// the difference, 3 roundings) kRoundoff sum(|n| * |difference|); 6 leaves slack.
 template <class Real>
 GRAZE_HD double separation(const MarginFrame<Real>& f, int d) {
   const Vec3<Real> n = direction(f, d), weight = magnitudes(n) * Real(6 * kRoundoff<Real>);

@@ -17,7 +17,7 @@ inline namespace GRAZE_FP {
 namespace first_attempt {
 
 // Whether the first vertices differ along only one coordinate axis, neither triangle reaches past its first vertex
-// towards the other, and nothing was rounded. Then `distance` is exact, so it decides ties with powers of two.
+// towards the other, and nothing was rounded. Then `distance` is exact, so even a power of two gets the right bucket.
 GRAZE_HD inline bool joined_by_axis(const MarginFrame<double>& f, const Vec& between, double& distance) {
   const bool x = between.x != 0, y = between.y != 0, z = between.z != 0;
   if (x + y + z != 1) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two first attempts at a pair's margin bucket. They are certified like core/margin/margin.h and much cheaper, but
+// Two quick attempts to find a pair's margin bucket. They are certified like core/margin/margin.h and much cheaper, but
 // leave more pairs undecided. They are written for GPUs, where double precision, roots and quotients are slow. Disjoint
 // triangles: the nearest features are guessed, and only the guess is certified. Intersecting triangles: single
 // precision finds the axes that may have the least overlap, and only these are computed in double.

@@ -64,7 +64,7 @@ struct Frame {
       least = hn::Min(least, hn::IfThenElse(hn::Eq(size, hn::Zero(df)), hn::Set(df, 0x1p127f), size));
     }
     largest = hn::PromoteTo(d, most);
-    // Multiples of least * 2^-23 or 2^-149, below 2 * largest: 27 + 1 + 24 bits at most; a double holds 53 bits.
+    // Differences are multiples of least * 2^-23 or 2^-149, below 2 * largest: 27 + 1 + 24 bits. A double has 53.
     exact = hn::Le(largest, hn::Mul(number(0x1p27), hn::Max(hn::PromoteTo(d, least), number(0x1p-126))));
   }
 };
@@ -192,7 +192,7 @@ HWY_INLINE Bounds distance_bounds(const Frame& f) {
   return {hn::IfThenElseZero(valid, lo), hi};
 }
 
-// The squares of bounds on the depth of intersecting triangles whose differences are exact.
+// The squares of bounds on the depth of intersecting triangles. All differences of coordinates are exact.
 struct Depth {
   V lo, hi;
 

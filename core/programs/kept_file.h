@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are built once and kept. A kept file's last line is a checksum of its name and content, which the loader
-// of shared objects ignores.
+// Files that are built once and kept. A kept file's last line is a checksum of its name and content. The loader of
+// shared objects ignores that line.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace graze {
 
-// Renames `made` to `kept`, replacing an old file.   Throws: std::runtime_error, after it has removed `made`.
+// Renames `made` to `kept`, replacing an old file.   Throws: std::runtime_error, after removing `made`.
 void move_over(const std::filesystem::path& made, const std::filesystem::path& kept);
 
 // Appends the checksum to `made`, then renames it to `kept`. No reader sees a partial file.   Throws: as move_over.

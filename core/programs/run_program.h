@@ -10,7 +10,7 @@
 
 namespace graze {
 
-// A new folder for unfinished files, which the destructor removes. The constructor also removes folders whose owners
+// A new folder for unfinished files; the destructor removes it. The constructor also removes folders whose owners
 // were killed: those without a lock, or, on a file system without locks, those older than a day.
 class Scratch {
  public:
@@ -25,7 +25,7 @@ class Scratch {
   int lock_ = -1;
 };
 
-// The program's file, found on the PATH as a shell does; empty if there is none. An empty PATH entry is the current
+// The program's file, found on the PATH as a shell finds it; empty if there is none. An empty PATH entry is the current
 // folder.
 std::filesystem::path on_path(const std::string& program);
 
@@ -39,7 +39,7 @@ struct Program {
 // Runs the program with `scratch` for its temporary files. If graze is killed, the supervisor removes `scratch`.
 // Returns: the exit status, or 128 plus the signal, as a shell does; 127 if there is no such program.
 // output: the text that it wrote to both streams.   Throws: Stopped; std::runtime_error if it takes too long or too
-// much memory. It may write files of up to 1 GiB each.
+// much memory. The program may write files of up to 1 GiB each.
 int run_program(const Program& program, const std::filesystem::path& scratch, std::string& output);
 
 // Runs the command in a shell, like run_program.   Returns: its output; its exit status in `status`.

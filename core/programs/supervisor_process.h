@@ -28,7 +28,7 @@ const std::array<int, 2>& program_files();
 class SupervisorProcess {
  public:
   // program: the supervisor's file name, in the folder of the running program. The supervisor gets one end of a socket
-  // as descriptor 3, and `shared` from 4 on. output: the descriptor it writes to; -1 for /dev/null.
+  // as descriptor 3, and `shared` from 4 on. output: the descriptor for its output; -1 for /dev/null.
   // Throws: std::system_error.
   SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments,
                     const std::vector<int>& shared, int output);

@@ -30,7 +30,7 @@ struct Simplicity {
 template <class Real>
 Simplicity simplicity(const BasicPair<Real>& pair);
 
-// Returns simplicity(pair).counts if that is at most `most`; otherwise some number above `most`, which is faster.
+// Returns simplicity(pair).counts if that is at most `most`, otherwise some number above `most`, to save time.
 // Requires: finite coordinates.
 template <class Real>
 std::uint64_t simplicity_counts(const BasicPair<Real>& pair, std::uint64_t most = ~std::uint64_t{0});
@@ -38,7 +38,7 @@ std::uint64_t simplicity_counts(const BasicPair<Real>& pair, std::uint64_t most 
 // The count of a criterion, 1 to 8.
 int count_of(const Simplicity& simplicity, int criterion);
 
-// Whether l comes before r by criterion 9 alone, the order of their coordinates.
+// Whether l comes before r by criterion 9 only, the order of the coordinates.
 template <class Real>
 bool simpler_coordinates(const BasicPair<Real>& l, const BasicPair<Real>& r);
 

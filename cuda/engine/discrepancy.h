@@ -21,7 +21,7 @@ struct DiscrepancySums {
 bool records_on_device(const Lane& lane);
 
 // Compares both lanes on all pairs of the source.
-// Requires: both lanes record on a device and have the same algorithm and scalar; lanes in double for doubles.
+// Requires: both lanes record on a device and have the same algorithm and scalar (double, for pairs of doubles).
 // Throws: std::runtime_error on any CUDA error.
 void count_discrepancies(const Lane& first, const Lane& second, const strata::PairSource& source,
                          const DiscrepancySums& to);

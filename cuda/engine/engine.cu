@@ -85,7 +85,7 @@ class CudaEngine final : public DeviceEngine {
     return result;
   }
 
-  // A block without memory for its pairs. Sets the counters, which all blocks of a run share, to zero.
+  // Returns a block that has no memory for its pairs yet. Sets the counters, which all blocks of a run share, to zero.
   template <class Block>
   Block begin(Axis axis) {
     const std::vector<LaneGroup>& groups = groups_[kOfDoubles<Block>];

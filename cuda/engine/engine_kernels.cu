@@ -103,8 +103,8 @@ template <class Block>
 constexpr std::uint32_t kLanesAtOnce =
     (kSharedBytes / sizeof(std::uint32_t) / kBucketCount - kCountersOfPairs) / Block::kCountersOfLane;
 
-// Counts pairs by bucket or by extreme. One warp counts a word; for each bucket, the first of its threads counts all
-// the bucket's pairs. Thread blocks with the same y count the same lanes, as many as shared memory has counters for.
+// Counts pairs by bucket or by extreme. One warp counts a word: the first thread whose pair is in a bucket counts all
+// pairs in that bucket. Thread blocks with the same y count the same lanes, as many as shared memory has counters for.
 template <class Block>
 __global__ void __launch_bounds__(kThreads) tally(Block block, bool by_extreme) {
   extern __shared__ std::uint32_t counts[];

@@ -297,9 +297,9 @@ struct PlaceExtremeOfDoubles {
   }
 };
 
-// Calls add(counter, pairs) for each counter of the pairs and of lanes [from, to). `pairs` has a bit for each pair of
-// the word that counts. same: the pairs to count, all in the same bucket. Counters are in the order of EngineResult and
-// start with lane `from`.
+// Calls add(counter, pairs) for each counter of the pairs and of lanes [from, to). `pairs` has the bits of the pairs in
+// the word that add to the counter. same: the pairs to count, all in the same bucket. Counters are in the order of
+// EngineResult and start with lane `from`.
 template <class Block, class Add>
 GRAZE_HD void count_word(const Block& block, std::uint32_t word, std::uint32_t same, std::uint32_t from,
                          std::uint32_t to, const Add& add) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The device lanes with the policy `bound`. This file is compiled once for each device variant with valid error bounds,
 // with its flags and in its own namespace GRAZE_FP. Define nothing else here, or the linker would mix the variants.
-// These lanes have no twins: each verdict is exact or declined, and the PTX is ten times as long as other lanes'.
+// These lanes need no twins, because each verdict is exact or declined. Their PTX is ten times as long as other lanes'.
 #include "core/lanes/decide_under.h"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/vote.cuh"

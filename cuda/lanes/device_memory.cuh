@@ -24,7 +24,7 @@ inline void check(cudaError_t error, std::source_location where = std::source_lo
 inline int count_devices() {
   int count = 0;
   if (cudaGetDeviceCount(&count) == cudaSuccess) return count;
-  cudaGetLastError();  // clears it
+  cudaGetLastError();  // clears the error
   return 0;
 }
 

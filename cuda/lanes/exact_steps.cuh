@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The filter and the later steps of the exact decision. The first steps take the pairs whose determinants fit in floats
 // or in doubles. The next steps use residues, then 128-bit integers or tighter bounds, then wide integers. Each step
-// lists the pairs that it cannot decide, so that a warp does not wait for one hard pair in 32. Pairs is any type with
-// load(pairs, i, coordinates), whose coordinates are of type Real. Device code only.
+// lists the pairs that it cannot decide, so that a warp does not wait for one hard pair in 32. Pairs is any type that
+// load(pairs, i, coordinates) accepts; its member Real is the coordinates' type. Device code only.
 #pragma once
 
 #include "core/exact/exact.h"

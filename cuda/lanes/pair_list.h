@@ -15,8 +15,8 @@ struct PairList {
   std::uint32_t* at;
   std::uint32_t* count;
 
-  // Adds an index. On a device, one atomic operation adds the indices of all threads of a warp, because they share the
-  // list's counter. Not thread-safe on the host.
+  // Adds an index. On a device, threads of a warp that add to the same list together need only one atomic operation.
+  // Not thread-safe on the host.
   GRAZE_HD void add(std::uint32_t place) const {
 #ifdef __CUDA_ARCH__
     const unsigned together = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(count));

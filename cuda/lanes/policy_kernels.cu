@@ -9,7 +9,7 @@
 namespace graze::cuda {
 inline namespace GRAZE_FP {
 
-// Each thread decides one pair. The twin generator finds the algorithm in the kernel's name: an index in Algorithms.
+// Each thread decides one pair. The twin generator reads the algorithm's index (in Algorithms) from the kernel's name.
 template <int algorithm, class Real>
 __global__ void absolute_pairs(DevicePairs pairs, Tolerances<Real> tolerances, std::uint32_t* intersects,
                                std::uint32_t* declined) {

@@ -18,7 +18,7 @@ __device__ void record_one(const Pairs& pairs, const Recorded<Real>& to, Recorde
   paths[i] = record<std::tuple_element_t<algorithm, Algorithms>>(t.a, t.b, Recorded<Real>{to.values + i, to.stride});
 }
 
-// Each thread records one pair. The twin generator finds the algorithm in the kernel's name: an index in Algorithms.
+// Each thread records one pair. The twin generator reads the algorithm's index (in Algorithms) from the kernel's name.
 template <int algorithm, class Real>
 __global__ void record_pairs(DevicePairs pairs, Recorded<Real> to, RecordedPath* paths) {
   record_one<algorithm>(pairs, to, paths);

@@ -23,8 +23,8 @@ struct QueryRange {
 };
 
 // One reference's counts over a range. `first` is the index of its first hit; the range's first triangle has index 0.
-// In a search for any hit, the first reference's `declined` counts only triangles before the first hit of all
-// references.
+// In a search for any hit, the first reference's `declined` counts only triangles before the earliest hit of
+// any reference.
 struct QueryCounts {
   std::uint64_t hits = 0, declined = 0, first = ~std::uint64_t{0};
 };

@@ -53,7 +53,7 @@ void launch_decline(std::uint32_t words, const std::uint32_t* not_finite, std::u
 void launch_count(std::uint32_t count, const std::uint32_t* hits, const std::uint32_t* declined, QueryCounts* counts,
                   cudaStream_t stream);
 
-// Finds the earliest hit in any row, and subtracts the declined triangles behind it from the first row's count of
+// Finds the earliest hit in any row, and subtracts the declined triangles after it from the first row's count of
 // declined triangles.
 void launch_forget_behind(std::uint32_t count, const std::uint32_t* declined, QueryCounts* counts, std::uint32_t rows,
                           cudaStream_t stream);

@@ -2,7 +2,7 @@
 // Memory bandwidth limits this kernel, so each warp prefetches tiles of triangles into shared memory with asynchronous
 // copies. The reference's slabs decide most triangles. The others are queued until there are 32 of them or their tile
 // is about to be overwritten; then the filter in floats decides them together. It leaves about one triangle in a
-// hundred open, which the kernel lists.
+// hundred open; the kernel lists these.
 #include <cuda_pipeline_primitives.h>
 
 #include <algorithm>

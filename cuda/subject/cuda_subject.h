@@ -26,8 +26,8 @@ struct CudaBuild {
   std::string hash;                     // hash of instructions and contractions, for which a proof is valid
   std::filesystem::path twin;           // a shared library, see cuda/twin/twin_library.h; empty without a twin
   std::string why_no_twin;              // one line; empty if there is a twin
-  bool machine_code_identical = false;  // ptxas assembles this PTX and the PTX with every contraction written out,
-                                        // which the twin replays, to the same bytes
+  bool machine_code_identical = false;  // ptxas makes the same bytes from this PTX as from the PTX with every
+                                        // contraction written out, which the twin replays
 };
 
 // "twin, machine code identical", "twin, not yet verified", or "no twin: …".

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PTX's machine code from a toolkit's ptxas, which shows without a device whether two PTX texts are the same program.
+// Assembles PTX with a toolkit's ptxas. Machine code shows, without a device, whether two PTX texts are one program.
 #pragma once
 
 #include <filesystem>

@@ -36,7 +36,7 @@ std::vector<fs::path> places() {
 
 // Runs the work in a child process, because NVRTC may never finish, crash, or catch signals.
 // Returns: the work's result.   Throws: CompileError or std::runtime_error, if the work does; Stopped, within 0.1 s of
-// the request.
+// a request to stop.
 std::string in_child(const std::function<std::string()>& work) {
   const StopSignals stops;
   Child child([&](int pipe) {

@@ -31,7 +31,7 @@ class SubjectOnDevice {
 std::unique_ptr<SubjectOnDevice> open_on_device(const CudaBuild& build);
 
 // Measures each build's kernel on `count` pairs of the stratum `uniform` in device memory, in nanoseconds per pair.
-// Each pass measures all builds, one after another. It reads only a build's `scalar` and `ptx`. Throws: as
+// Each pass measures all builds, one after another. Only a build's `scalar` and `ptx` are used. Throws: as
 // open_on_device; std::runtime_error if the device does not answer.
 struct SubjectCosts {
   std::string device;                            // "NVIDIA H100 80GB HBM3"

@@ -147,8 +147,8 @@ TEST_P(KernelsUnderTolerances, HaveTwinsJustWhereMachineCodeHasTheirContractions
 INSTANTIATE_TEST_SUITE_P(Variants, KernelsUnderTolerances, testing::Values("cuda_fma", "cuda_nofma"),
                          [](const auto& row) { return std::string(row.param); });
 
-// A random program without branches, dead code or equal products. The operands of its sums and products are inputs,
-// sums, and products that other sums share. The program stores every sum and product that no other instruction reads.
+// A random program without branches, dead code or equal products. Operands are inputs and earlier sums; sums and fmas
+// also take products, which several of them may share. The program stores every result that no other instruction reads.
 std::string random_program(std::mt19937& random, const std::string& name, const std::string& type) {
   const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
   const std::string bytes = type == "f32" ? "4" : "8";

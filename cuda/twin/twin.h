@@ -80,7 +80,7 @@ std::span<const ContractionSite> contraction_sites(const Lane& lane, const AnyPa
 void add_foreign_twin(const Lane& lane, const std::string& twin, double most_seconds);
 double most_seconds(const Lane& lane);  // limit for one verdict.   Requires: a foreign lane with sites
 
-// A lane's verdict if only those contraction sites are fused whose bit is set. The other sites round twice. Bit i % 64
+// A lane's verdict if only the contraction sites whose bit is set are fused. The other sites round twice. Bit i % 64
 // of word i / 64 belongs to site i. With no bit set, the verdict is that of cuda-nofma; with all bits set, it is the
 // lane's. Foreign code runs in this process and may crash or not return. Requires: a lane with contraction sites;
 // (sites + 63) / 64 words; a pair of doubles only for a lane in double or a foreign lane.
@@ -100,8 +100,8 @@ struct Comparison {
 Verdict decide_comparing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused,
                          std::span<Comparison> made, std::size_t& count);
 
-// The contraction sites of the recording twin. record_fusing records its values with only those sites fused whose bit
-// is set; see decide_fusing.
+// The contraction sites of the recording twin. record_fusing records its values and, like decide_fusing, fuses
+// only the sites whose bit is set.
 std::span<const ContractionSite> record_sites(const Lane& lane);
 std::span<const ContractionSite> record_sites_of_doubles(const Lane& lane);
 void record_fusing(const Lane& lane, std::span<const Pair> pairs, const Records& to,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// More PTX operations on the CPU, which round toward zero, down and up. f32 operations round the exact result, a double
-// and the sign of its remainder. f64 operations set the processor's rounding mode.
+// More PTX operations on the CPU, which round toward zero, down and up. f32 operations round the exact result, held as
+// a double and the sign of the remainder. f64 operations set the processor's rounding mode.
 #pragma once
 
 #include <cfenv>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs the kernels of generator/semantics*.ptx on special values, and compares each slot of their results with the
-// expected value and with a device. Included after the kernels, in the namespace of the operations.
+// expected value and with the slot from a device. Included after the kernels, in the namespace of the operations.
 template <class Real>
 using Limits = std::numeric_limits<Real>;
 
@@ -40,7 +40,7 @@ std::vector<Real> special_values() {
   return values;
 }
 
-// A result: the slot's bytes as the expected type. All NaNs are equal.
+// Whether the slot's bytes, as type T, are those of the expected value. All NaNs are equal.
 template <class T>
 bool same(std::uint64_t slot, T expected) {
   T found;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recursive predicate: it halves the first triangle until it is small or far from a vertex of the second.
+// A recursive predicate: it halves the first triangle to a given depth, except parts far from a vertex of the second.
 struct Triangle {
   float v[9];
 };

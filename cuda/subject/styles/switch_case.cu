@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A predicate with a switch of many cases. The nearest pair of features selects the case.
+// A predicate with a switch of many cases. The nearest pair of vertices selects the case.
 __device__ bool intersects(const float a[9], const float b[9]) {
   int nearest = 0;
   float least = 3e38f;

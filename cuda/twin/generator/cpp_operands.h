@@ -50,7 +50,7 @@ class Operands {
   // The address in "[%rd1+8]".
   std::string address(const std::string& memory) const;
 
-  // The elements of a list such as "{%r1,%r2}"; any other operand is its only element.
+  // The elements of a list such as "{%r1,%r2}"; any other operand is returned as the only element.
   static std::vector<std::string> elements(const std::string& name);
 
   // Throws: PtxError if a modifier between the operation and its type is not in the list.

@@ -19,7 +19,7 @@ std::string memory(const Operands& o) {
   const bool loads = i.op[0] == "ld";
   std::string where = o.address(o.operand(loads ? 1 : 0)), result;
   const Names elements = Operands::elements(o.operand(loads ? 0 : 1));
-  if (elements.size() > 1) {  // one element may be the register of the address
+  if (elements.size() > 1) {  // the first load may overwrite the register of the address
     result = fmt::format("const u64 at = {}; ", where);
     where = "at";
   }

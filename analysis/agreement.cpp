@@ -7,7 +7,7 @@
 namespace graze::analysis {
 namespace {
 
-// Whether the lanes agree on the pairs used to choose. clearly: the rate on fresh pairs will almost surely be at most
+// Whether the lanes agree on AgreeSpec::sources. clearly: the rate on fresh pairs will almost surely be at most
 // max_rate too.
 enum class Agrees { clearly, perhaps, no };
 

@@ -97,7 +97,7 @@ TEST(Agree, WithoutContractionNoPolicyIsNeeded) {
   EXPECT_GT(contracted, 100u);
 }
 
-// Checks that agree() made the choice that it documents, and that its bounds hold on pairs of another seed.
+// Checks that agree() made the choice that its comment describes, and that its bounds hold on pairs of another seed.
 void expect_true(const AgreeSpec& spec, const Agreed& agreed, const std::vector<std::string>& globs) {
   const Agreement chosen = spec.sweep(std::vector<std::string>{agreed.chosen}, spec.sources).front();
   const auto clearly = [&](const Agreement& a) {

@@ -69,7 +69,7 @@ TEST(Tally, CountsEveryPairOfABlockOfAnyLength) {
   }
 }
 
-// For foreign code, both bits together mean that it failed; a single bit is its verdict.
+// If both bits of a pair are set (intersects and declined), foreign code failed on it. One bit alone is a verdict.
 TEST(Tally, FailuresOfForeignCodeAreCountedAsWhatTheyAre) {
   struct Code : ForeignCode {
     void decide(const Pair*, std::size_t, std::uint64_t*, std::uint64_t*) override {}

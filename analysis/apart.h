@@ -24,8 +24,8 @@ class ApartFrom {
 
 enum class Ended { in_order, crashed, silent };
 
-// Runs the work. Each step may take `seconds`.   result: the data that the work passed to `finish`, if it ended in
-// order.
+// Runs the work. Each step may take `seconds`.   result: the data that the work passed to `finish`, if it ended
+// normally.
 // Throws: std::runtime_error if no process can be started; the message names the lane.
 Ended run_apart(const Lane& lane, double seconds, const std::function<void(const ApartFrom&)>& work,
                 std::string& result);

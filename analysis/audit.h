@@ -11,8 +11,8 @@ namespace graze::analysis {
 // cause         run without the cause                          run with the cause alone
 // logic         none: logic cannot be removed                  exact arithmetic
 // contraction   the named contractions are rounded, all        only the named contractions are fused; all
-//               others stay fused; all are rounded if the      contractions if the named ones are not known
-//               named ones are not known                       (then without exponent limits)
+//               others stay fused; all are rounded if the      contractions if the explanation names none
+//               explanation names none                         (then without exponent limits)
 // fast math     the same source, rounded as written            none: what the lane computed is not known
 // overflow,     without this exponent limit, and without       exact arithmetic with this limit alone
 // underflow     both limits

@@ -103,8 +103,8 @@ Corrected corrected(const Wrong& wrong, const std::vector<std::size_t>& comparis
   return {path_of(run), run.verdict};
 }
 
-// Tries every smaller set, and every earlier set of the same size. The four pairs come from bug reports. A version that
-// corrected values instead of outcomes named two comparisons where one is enough, or not the first one.
+// Tries every smaller set, and every earlier set of the same size. The four pairs come from bug reports: a version that
+// corrected values instead of outcomes named two comparisons where one is enough, or one that is not the first.
 TEST(Deciding, IsTheSmallestSetAndOfEqualOnesTheFirst) {
   std::vector<Wrong> some;
   for (std::size_t i = 0; i < all_wrong().size(); i += 7) some.push_back(all_wrong()[i]);

@@ -14,8 +14,8 @@ namespace graze::analysis {
 struct Blame {
   std::vector<cuda::ContractionSite> sites;  // fusing only these gives the lane's verdict; in program order
   bool smallest = true;                      // whether no smaller set gives the verdict
-  bool lines_decide = false;                 // whether rounding only these lines' products
-                                             // gives the verdict without contraction
+  bool lines_decide = false;                 // whether rounding only these lines' products has
+                                             // the same effect on the verdict as rounding all
   std::string why_not;                       // the reason if the search did not finish
 };
 

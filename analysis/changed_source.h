@@ -21,7 +21,7 @@ struct DecidingNumber {
 // underflow. Prefers numbers that also decide on the pair's images, because on one pair any change may make the code
 // right by luck. If no single number decides, changes all numbers together. is_right, is_right_on_images: called with
 // the changed code; the second only if the first returns true.
-// doubles: replaces float by double too, and changes all numbers together.
+// doubles: also replaces float by double, and changes all numbers together.
 using IsRight = std::function<bool(const DecideBlock& block)>;
 std::optional<DecidingNumber> deciding_number(const Lane& lane, const IsRight& is_right,
                                               const IsRight& is_right_on_images, bool doubles = false);

@@ -13,7 +13,7 @@
 namespace graze::analysis {
 
 // Whether the verdict differs from the truth and the lane's convention excludes the pair. Crashes, time-outs and
-// unstable verdicts never count as convention.
+// unstable verdicts are never excused.
 template <class Real>
 bool by_convention(const Lane& lane, Verdict verdict, const BasicPair<Real>& pair, const Relation& truth);
 inline bool by_convention(const Lane& lane, Verdict verdict, const AnyPair& pair, const Relation& truth) {

@@ -72,8 +72,8 @@ void sweep_curves(std::vector<CurveOf<Point>>& curves, int cube, const SweepPoli
   });
 }
 
-// Like sweep_curves, but for absolute curves whose every point takes a build. Each curve has fewer points: 0, every
-// fourth power of two, and smaller steps around the best point. The range is wide, because the constant may bound a
+// Like sweep_curves, but for absolute curves, each point of which takes a build. Each curve has fewer points: 0, every
+// fourth power of two, and smaller steps around the best point. The range is wide, because the epsilon may bound a
 // length, an area or a volume.
 template <class Point, class SweepPolicies, class Best>
 void sweep_values(std::vector<CurveOf<Point>>& curves, int cube, const SweepPolicies& sweep, const Best& best) {

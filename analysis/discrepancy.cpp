@@ -280,7 +280,7 @@ Discrepancies discrepancies(const DiscrepancySpec& spec) {
       nothing.emplace_back(spec.sources.size(), DiscrepancyCounts(lanes.first->algorithm));
     return nothing;
   };
-  const tbb::global_control limit = thread_limit(spec.threads);  // for the host's part on a device too
+  const tbb::global_control limit = thread_limit(spec.threads);  // also for the host's part of a run on a device
   Discrepancies on_device = nothing_yet();
   std::vector<std::vector<bool>> done(spec.lanes.size(), std::vector<bool>(spec.sources.size()));
   for (std::size_t l = 0; l < spec.lanes.size() && spec.on_device; ++l) {

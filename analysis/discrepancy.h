@@ -21,7 +21,7 @@ namespace graze::analysis {
 struct DiscrepancyCounts {
   std::vector<std::uint64_t> counts;
   std::vector<std::uint64_t> maxima;  // bits of doubles; band_maxima::kFields for each question
-  // For each lane, the number of pairs on which the recorded run, which is compiled separately, has another verdict.
+  // For each lane, the number of pairs on which its recorded run, which is compiled separately, gives another verdict.
   std::uint64_t unlike[2] = {0, 0};
 
   explicit DiscrepancyCounts(int algorithm = 0);
@@ -82,8 +82,8 @@ struct DiscrepancySpec {
 };
 
 // counts[comparison][source]. The counts are the same on host and device, and for any number of threads. On a device,
-// the cuda-nofma kernels compute a host lane's values. If the host lane is compared with cuda-nofma itself, the host
-// records its values too; if any bit differs, the comparison runs on the host.
+// the cuda-nofma kernels compute a host lane's values. If the other lane is cuda-nofma itself, the host also computes
+// the host lane's values; if any bit differs, the comparison runs on the host.
 // Requires: no source of doubles if a lane is in float.
 using Discrepancies = std::vector<std::vector<DiscrepancyCounts>>;
 Discrepancies discrepancies(const DiscrepancySpec& spec);

@@ -236,8 +236,8 @@ TEST(Discrepancy, SourcesOfBothTypesAddUp) {
 }
 
 // A measurement by hand on 10^6 pairs from the thesis found that some signed distance differs on 59.7 % of the pairs,
-// its sign on 1 in 532, and the verdict on 1 in 3,330. That covers all six distances, but the algorithm computes the
-// last three only if the first three do not separate. So this test takes the last three from the swapped pair.
+// the sign of one on 1 in 532, and the verdict on 1 in 3,330. It covers all six distances, but the algorithm computes
+// the last three only if the first three do not separate. So this test takes the last three from the swapped pair.
 TEST(Discrepancy, FindsTheSharesThatWereMeasuredByHand) {
   constexpr int kPairs = 100'000;
   const LanesCompared lanes{lane("interval_overlap/f32/cpu"), lane("interval_overlap/f32/cuda-fma")};
@@ -423,7 +423,7 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
 }
 
 // With and without contraction, each lane's value differs from the exact value by at most the bound on its rounding
-// error, even if numbers underflow. So no sign can differ beyond two bounds.
+// error, even if numbers underflow. So signs can differ only within two bounds of 0.
 TEST(Discrepancy, BoundsOfTheRoundingErrorHold) {
   std::uint64_t bounded = 0, near = 0, unbounded = 0;
   for (const LanesCompared& lanes : published(Variant::cpu, Variant::cuda_fma)) {

@@ -34,7 +34,7 @@ void add_lines(Sites sites, Mask mask, std::vector<FusedLine>& lines) {
   }
 }
 
-// The lines of the kernels that the sources' pairs need.
+// The fused lines of the kernels for the sources' coordinate types.
 std::vector<FusedLine> lines_of(const Lane& lane, Sources sources) {
   const Sites of_floats = cuda::record_sites(lane), of_doubles = cuda::record_sites_of_doubles(lane);
   std::vector<FusedLine> lines;

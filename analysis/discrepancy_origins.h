@@ -28,7 +28,7 @@ struct FusedLine {
 // only that line is fused.
 struct Start {
   std::vector<std::uint64_t> by_line;  // by line; the last entry counts values for which no single line suffices
-  // growth[k]: fusing the line changes its result by at most an ulp, and moves the value by 2^k to 2^(k+1) ulps.
+  // growth[k]: values that the line's fusion moves by 2^k to 2^(k+1) ulps, while its own result moves by at most one.
   // Products, quotients and roots pass on a relative error; only sums whose terms cancel amplify it.
   std::array<std::uint64_t, 64> growth = {};
 };
@@ -37,7 +37,7 @@ struct Start {
 using Simpler = std::function<bool(const AnyPair&, const AnyPair&)>;
 
 struct Origins {
-  std::vector<FusedLine> lines;                 // in program order; lines only in the kernel for doubles come last
+  std::vector<FusedLine> lines;                 // in program order; those only in the kernel for doubles last
   std::map<std::pair<int, int>, Start> starts;  // by value: the number of its question, and 0 or 1
   std::uint64_t pairs = 0, verdicts = 0;        // pairs examined; those on which contraction changes the verdict
 };

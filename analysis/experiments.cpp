@@ -173,14 +173,14 @@ class Trial {
     return found;
   }
 
-  // Whether products of differences stay within the exponents, as far as that can be known. Overflow is checked for the
-  // longest products; underflow is checked only for the usual products, whose factors may all be small.
+  // Whether products of differences stay in the exponent range, as far as that can be known. Overflow is checked for
+  // the longest products; underflow is checked only for the usual products, whose factors may all be small.
   bool has_usual_exponents() const {
     return kUsualFactors * size_.smallest_difference >= limits().least &&
            kMostFactors * (size_.largest_difference + 1) < limits().most;
   }
 
-  // The lane with the same code and compiler in which every operation is rounded, as OpenCL has. Null if there is none.
+  // The lane with the same code and compiler that rounds every operation; OpenCL has one. Null if there is none.
   const Lane* rounded_sibling(const subjects::Toolchain& toolchain) const {
     for (const Lane& lane : lanes()) {
       if (lane.info != lane_.info || lane.scalar != lane_.scalar || !lane.decide) continue;
@@ -306,7 +306,7 @@ class Trial {
   }
 
   // The lane is right at all scales in range, so the pair is out of range. The turn lies between the range and the
-  // pair.
+  // pair's own scale.
   Experiment outside(Turn turn) const {
     // Code that adds lengths and areas may be wrong here even without exponent limits. For doubles, no wider type can
     // rule this out.
@@ -335,7 +335,7 @@ class Trial {
                  : text + doubles};
   }
 
-  // For pairs that have no scale at which every product stays within the exponents.
+  // For pairs that have no scale at which every product stays in the exponent range.
   std::optional<Experiment> by_any_scale() const {
     const Scales all = exact_scales(size_);
     const auto up = ask_.tried(lane_, {1, all.last}, 24), down = ask_.tried(lane_, {all.first, -1}, 24);

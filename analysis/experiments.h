@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Explains why foreign code is wrong on a pair. The code's steps are not visible, so the evidence comes from
-// experiments: its verdicts on other pairs, and the verdicts of other builds of its source.
+// experiments: the code's verdicts on other pairs, and the verdicts of other builds of its source.
 #pragma once
 
 #include "analysis/explain.h"
@@ -18,7 +18,7 @@ namespace graze::analysis {
 //                toolchain's strict flags. If rounding only the fused products of one line makes the code right, that
 //                line is named.
 //   absolute epsilon   the verdict changes with the pair's scale: once, and from wrong to right as the scale grows. No
-//                product of up to kMostFactors coordinates leaves the scalar's exponents at these scales. Scaling by a
+//                product of up to kMostFactors coordinates leaves the exponent range at these scales. Scaling by a
 //                power of two changes nothing else in an algorithm whose units are consistent. Code that adds lengths
 //                and areas changes its verdict more often.
 //                The cause is also an absolute epsilon if the code is right with a negligible number in place of small
@@ -26,25 +26,25 @@ namespace graze::analysis {
 //                orders and mirror images of the pair on which the code was wrong. It must also be right with 1e-9
 //                times the number, because code that multiplies by a conversion factor may be right with 1e-36 if
 //                products underflow. The unchanged code must be right at some larger scale at which no product of
-//                kUsualFactors leaves the exponents.
+//                kUsualFactors leaves the exponent range.
 //   relative epsilon   a small number decides in the same way, but the unchanged code is wrong at every larger scale.
 //   uninitialised   the verdict depends on the value that the compiler gives to uninitialised variables. This is
 //                also the cause if any such value makes the verdict right and the compiler warns about such a variable.
 //                Then the coordinates must be small integers times a power of two, so that different machine code
 //                hardly rounds differently.
-//   underflow, overflow   the code is right at all scales at which no product of kUsualFactors leaves the exponents,
-//                and the pair is smaller or larger than these scales allow. For doubles this is not settled: code that
-//                adds lengths and areas may be wrong even without exponent limits, and no wider type can rule that out.
+//   underflow, overflow   the code is right at all scales at which no product of kUsualFactors leaves the exponent
+//                range, and the pair is smaller or larger than these scales allow. For doubles this is not settled:
+//                code that adds lengths and areas may be wrong even without exponent limits; no wider type excludes it.
 //   degenerate input, order-dependent, logic   the coordinates are small integers times a power of two. The code is
 //                wrong at all larger scales, where an absolute epsilon vanishes, and in doubles if it can be built so.
 //                No product of up to kMostFactors differences rounds, or only products of more than kUsualFactors
-//                round. In the second case, changing these products must leave the code wrong in the same orders
-//                of the pair's 72. For logic, the code is wrong in all orders.
-//   rounding     the code is right in float64 at every scale, and wrong in float32 at every scale within the exponents.
-//                If it has no function of doubles, its source with double in place of float serves as one.
+//                round. In the second case, changing these products must leave the code wrong in the same ones
+//                of the pair's 72 orders. For logic, the code is wrong in all orders.
+//   rounding     the code is right in float64 at every scale, and wrong in float32 at every scale in the exponent
+//                range. If it has no function of doubles, its source with double in place of float serves as one.
 // If no cause can be shown, the result is not settled, and the cause is a guess. The guess is an epsilon if negligible
-// numbers and double in place of float together make the code right; a relative one if the code is wrong in doubles at
-// all larger scales. Otherwise the guess depends on the pair's images: order-dependent if the code is right only on
+// numbers and double in place of float together make the code right: a relative epsilon if the code is wrong in doubles
+// at all larger scales. Otherwise the guess depends on the pair's images: order-dependent if the code is right only on
 // other orders, rounding if it is right on another image, and degenerate input or logic if it is right on none. If
 // products of three differences round, the guess is logic only if the code is wrong in doubles too. If the code is
 // wrong in doubles, which hold these products, the guess is not rounding. If the source has no small number, and the

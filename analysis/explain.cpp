@@ -32,7 +32,7 @@ std::string line_of(const std::source_location& where) {
 
 // As bits are added, a verdict may alternate between right and wrong until products are exact, or for ever if roots or
 // quotients leave a tie open in every precision. Unless exact arithmetic was certain with kMostBits, a number of bits
-// is enough only if it is at most half of kMostBits.
+// counts as enough only if it is at most half of kMostBits.
 int bits_needed(int algorithm, const oracle::Exactly& exactly, const AnyPair& pair, Verdict truth) {
   const int least = pair.floats ? 24 : 53;
   const int bits = exactly.verdict == truth ? oracle::bits_needed(algorithm, pair.doubles, truth, least) : 0;
@@ -108,7 +108,7 @@ Step step_of(const Seen<double>& seen, const oracle::ExactStep& exact) {
 }
 
 // Returns a function that runs the algorithm along a path with the cause removed. Empty for rounding, because exact
-// arithmetic shows that case.
+// arithmetic is the run without it.
 WithoutCause without(Cause cause, const Lane& lane, const AnyPair& pair, Contraction rule) {
   if (cause == Cause::contraction)
     return [&lane, &pair](const Path& path) { return run_led(lane, pair, Contraction::none, path); };

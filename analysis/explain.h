@@ -34,9 +34,9 @@ namespace graze::analysis {
 //                mantissa are included, if the limit made the comparison go wrong
 //   rounding     no other condition holds
 // For foreign code, experiments find the cause (experiments.h). The causes from absolute_epsilon on apply only to
-// foreign code, except policy:
+// foreign code. The exception is policy:
 //   policy       the lane uses a policy, and the same lane without the policy is right, or the policy declined. If
-//                that lane is wrong too, its cause is reported as not settled.
+//                that lane is wrong too, the cause is that lane's, and is reported as not settled.
 enum class Cause {
   rounding,
   contraction,
@@ -106,10 +106,10 @@ struct LaneExplanation {
   WrongOf orders, mirrored, scalings;      // see neighbours.h
   std::string experiment;  // for lanes without steps (foreign, under a policy, or `stored`): the evidence for the cause
   std::string line;        // for foreign code: "mine.cpp:9", the line that decides; empty if it is not known
-  bool slow = false;       // for the same lanes: other pairs time out or fail, so neighbours were not tried
+  bool slow = false;       // for lanes without steps: other pairs time out or fail, so no neighbours were tried
   bool beyond = false;     // for the cause `stored`: float32 cannot hold a number of the pair
 
-  // Whether the account comes from experiments, because the lane's steps are not known.
+  // Whether the lane's steps are not known, so that the account comes from experiments.
   bool by_experiment() const { return lane->foreign || lane->under || cause == Cause::stored; }
 
   // The comparison to report: the first deciding one. Null if there is none, or if the algorithm itself is to blame.

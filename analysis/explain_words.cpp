@@ -87,8 +87,8 @@ std::string words(double x) {
 
 std::string exact_words(const oracle::Beside& value) { return std::isnan(value.exact) ? "NaN" : value.decimal; }
 
-// "a signed distance of exactly 0 into 1.2e-09". The lane never subtracts the two compared numbers. If their difference
-// is not finite, names both: "two interval ends of exactly 3 and 4 into infinity and 4".
+// "a signed distance of exactly 0 into 1.2e-09": the difference of the compared numbers, though the lane does not
+// compute it. If it is not finite, names both numbers: "two interval ends of exactly 3 and 4 into infinity and 4".
 std::string turned(const LaneExplanation& lane, const Step& told) {
   if (told.is_undefined())
     return fmt::format("a division by exactly zero, after which no number is defined, into {} and {}",

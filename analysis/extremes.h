@@ -25,7 +25,7 @@ struct RightSide {
   std::optional<int> worse;  // the first exponent at which the lane is shown to be less right
 };
 
-// The range in which a lane is as right as at the origin, the exponent nearest to 0. "Shown" means that the
+// The range in which a lane is as right as at the origin (the exponent nearest to 0). "Shown" means that the
 // 95 % intervals of both shares prove it.
 struct RightRange {
   ErrorsAt origin;

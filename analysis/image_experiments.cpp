@@ -36,8 +36,8 @@ bool is_degenerate(const BasicPair<Real>& pair) {
   return hulls.dimension_a < 2 || hulls.dimension_b < 2;
 }
 
-// Multiplies all coordinates by `factor`, then adds axis `from` to axis `to` if they differ. This changes longer
-// products, but not the truth, nor, if the factor is 1, any determinant.
+// Multiplies all coordinates by `factor`, then adds axis `from` to axis `to` if they differ. The truth stays the same,
+// and if the factor is 1, so does every determinant. Longer products change.
 struct Image {
   int factor, from, to;
 };

@@ -25,12 +25,12 @@ bool has_small_integers(const BasicPair<Real>& pair, Scalar scalar);
 template <class Real>
 bool holds_determinants(const BasicPair<Real>& pair, Scalar scalar);
 
-// The cause, if the products of has_small_integers do not round in the widest arithmetic in which the code is known to
-// be wrong. Returns nothing if scaling the pair by 3 or 5 changes the orders in which the lane is wrong, because then
-// quotients or roots may decide. If products of kMostFactors may round, adding one axis to another must not change
-// these orders either. Rounded quotients can still be the real cause: they were for 18 of 18,237 causes of published
-// algorithms on such pairs, all in interval_overlap.   Requires: has_small_integers; the lane is wrong on the pair at
-// all larger scales.
+// The cause, if the products described at has_small_integers do not round in the widest arithmetic in which the code is
+// known to be wrong. Returns nothing if scaling the pair by 3 or 5 changes the orders in which the lane is wrong,
+// because then quotients or roots may decide. If products of kMostFactors may round, adding one axis to another must
+// not change these orders either. Rounded quotients can still be the real cause: for published algorithms on
+// such pairs they were so 18 of 18,237 times, always in interval_overlap.   Requires: has_small_integers; the lane is
+// wrong on the pair at all larger scales.
 template <class Real>
 std::optional<Experiment> without_rounding(const BasicPair<Real>& pair, Scalar widest, const Ask<Real>& ask);
 

@@ -111,7 +111,7 @@ class ImageVerdicts {
     return last_turn_ = {wrong, right};
   }
 
-  // Whether the same code in float64 is right at all tried scales at which no product leaves its exponents.
+  // Whether the same code in float64 is right at all tried scales at which no product leaves its exponent range.
   bool right_in_float64_at_every_scale() const {
     const DecideBlock f64 = in_float64();
     if (!f64) return false;

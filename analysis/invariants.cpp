@@ -26,7 +26,7 @@ constexpr std::uint64_t kBlock = 32;  // pairs; they have about 2,300 images
 //   mirror     both sides of a comparison keep their values, or both change sign. This is not so in
 //              guigue_devillers_2003, which chooses its determinants by the triangles' orientation.
 //   translate  coordinates are used only in differences, which do not change.
-//   swap       the axes of both triangles are tried; the axes of two edges only change sign.
+//   swap       the axes of both triangles are tried either way; the axes of two edges only change sign.
 // No algorithm keeps its verdicts when vertices or axes are reordered, because the rounding of a sum of three terms
 // depends on their order.
 struct Claims {

@@ -57,7 +57,7 @@ bool knows_range(const Lane& lane);
 // The invariants that a published algorithm claims; invariants.cpp gives the reason for each.
 std::vector<Invariant> claimed_invariants(std::string_view algorithm);
 
-// The exact decision, the oracle or an algorithm that claims the invariant broke it.
+// An invariant was broken by the exact decision, by the oracle, or by an algorithm that claims it.
 struct InvariantBroken : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -98,7 +98,7 @@ struct InvariantSpec {
   std::function<bool(const AnyPair& l, const AnyPair& r)> simpler;
   DecideBlock exact = find_lane("exact/f64/cpu")->decide;              // decides every image
   std::function<bool(const AnyPair&)> intersects = oracle_intersects;  // decides all images of some pairs
-  std::uint64_t oracle_every = 8;                                      // one pair in this many is such a pair
+  std::uint64_t oracle_every = 8;                                      // the oracle decides one pair in this many
 };
 
 struct Invariants {

@@ -198,7 +198,7 @@ std::vector<std::string> lanes_of(const std::vector<Variant>& variants) {
   return ids;
 }
 
-// Every claim holds on every stratum, and some pair breaks every invariant that is not claimed.
+// Every claim holds on every stratum, and each invariant that is not claimed is broken by some pair.
 TEST(Invariants, ClaimsHoldAndNothingElseDoes) {
   const std::vector<std::string> ids = lanes_of({Variant::cpu, Variant::cuda_nofma});
   const InvariantSpec spec = spec_of(ids, strata::kStrataCount * 150);
@@ -215,8 +215,8 @@ TEST(Invariants, ClaimsHoldAndNothingElseDoes) {
   }
 }
 
-// Lanes in float decide pairs of doubles as float32 stores them, and images of the stored pairs. So the claims hold
-// here too.
+// Lanes in float decide the pairs of doubles as float32 stores them, and the images of these stored pairs. So the
+// claims hold here too.
 TEST(Invariants, ClaimsHoldOnDoubles) {
   std::vector<std::string> ids = lanes_of({Variant::cpu});
   ids.insert(ids.end(), {"exact/f32/cpu", "exact/f64/cpu"});

@@ -22,8 +22,8 @@ template <class Real>
 std::vector<BasicPair<Real>> scalings(const BasicPair<Real>& pair);
 template <class Real>
 std::vector<BasicPair<Real>> axes(const BasicPair<Real>& pair);  // the 6 orders of the axes
-// Translations that move a vertex to the origin, and two along (1, 1, 1), by plus and minus the power of two of the
-// largest coordinate. Translations that would round a coordinate are left out.
+// Translations that move a vertex to the origin, and the translations by ±(2^k, 2^k, 2^k), where 2^k is the largest
+// coordinate rounded down to a power of two. Translations that would round a coordinate are left out.
 template <class Real>
 std::vector<BasicPair<Real>> translated(const BasicPair<Real>& pair);
 

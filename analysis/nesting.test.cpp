@@ -111,7 +111,7 @@ TEST(Nesting, IsThatOfTheImages) {
   EXPECT_GT(seen[Nesting::same], 3);
 }
 
-// Segments and points can lie in triangles too. Only shapes in one plane can be the same.
+// Segments and points can lie in triangles too. Only shapes in one plane can cover the same points.
 TEST(Nesting, OfDegenerateTriangles) {
   const auto of = [](const Pair& pair) { return nesting_of(pair, relation_of(pair)); };
   const Vec3<float> o{0, 0, 0}, x{4, 0, 0}, y{0, 4, 0}, p{1, 1, 0}, q{2, 1, 0}, out{1, 1, 3}, under{1, 1, -1};

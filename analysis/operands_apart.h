@@ -22,7 +22,7 @@ struct LineApart {
   std::uint64_t differs = 0;    // comparisons with an operand whose bits differ; the sum of the next four
   std::uint64_t zero_sign = 0;  // comparisons in which only signs of zeros differ
   std::uint64_t not_finite = 0;
-  // Of the two operands, the one that differs more is lower (or higher) with contraction by 2^k to 2^(k+1) ulps.
+  // Comparisons in which the operand that differs more is lower (higher) with contraction, by 2^k to 2^(k+1) ulps.
   std::array<std::uint64_t, 64> below = {}, above = {};
   std::uint64_t sign = 0;     // the sign of left minus right differs
   std::uint64_t outcome = 0;  // the outcomes differ

@@ -20,7 +20,7 @@ inline tbb::global_control thread_limit(int threads) {
 
 // Calls work(task, result) for each task below `tasks`, on this many threads (as in thread_limit). Each thread has its
 // own result, which starts as empty(). Returns: the sum of the results, made with add(sum, result). The sum must not
-// depend on their order.
+// depend on the order of the results.
 template <class Empty, class Work, class Add>
 auto sum_over_threads(std::size_t tasks, int threads, const Empty& empty, const Work& work, const Add& add) {
   const tbb::global_control limit = thread_limit(threads);

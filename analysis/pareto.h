@@ -35,8 +35,8 @@ std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const strata::Pai
 // be timed.
 std::string why_not_timed(const Lane& lane);
 
-// The costs of lanes. The time of a user's code is its own process's processor time, without communication. There, each
-// call decides one pair, unless the code takes blocks. A lane that is not timed, or that failed on a pair, has no cost.
+// The costs of lanes. The time of a user's code is its own process's processor time, without communication. Each call
+// there decides one pair, unless the code takes blocks. A lane that is not timed, or failed on a pair, has no cost.
 std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, const strata::PairBlock& pairs,
                                           int passes, Calls calls = Calls::of_blocks);
 

@@ -102,7 +102,7 @@ TEST(Extremes, FindTheScaleOfAnAbsoluteEpsilon) {
 }
 
 // A range found on some pairs also holds on five times as many fresh pairs: at its ends the lane is as right as at 2^0.
-// Where the range shows more errors, fresh pairs have more errors too.
+// At exponents at which it is shown to be less right, it is less right on the fresh pairs too.
 TEST(Extremes, AreTrueOfFreshPairs) {
   const std::vector<std::string> lanes = {"moller_1997/f32/cpu", "interval_overlap/f32/cpu", "separating_axes/f64/cpu"};
   const std::vector<std::string> strata = {"near_edge_edge", "near_vertex_face", "uniform"};

@@ -61,7 +61,7 @@ TEST_P(PolicyOverStratum, WhatABoundDecidesIsTheTruth) {
   EXPECT_TRUE(open || decided > 10'000u) << decided;  // a filter must decide most pairs
 }
 
-// Checks the claim right_without_rounding of an algorithm on proper triangles.
+// Checks on proper triangles each algorithm's claim to be right_without_rounding.
 TEST_P(PolicyOverStratum, AlgorithmsAreRightWithoutRoundingWhereTheySaySo) {
   int asked = 0;
   for (const Pair& pair : drawn(GetParam().stratum, 300)) {

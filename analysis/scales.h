@@ -78,7 +78,7 @@ inline Scales common(Scales l, Scales r) { return {std::max(l.first, r.first), s
 inline Scales exact_scales(const Size& size) { return {size.least - size.low, size.most - size.high}; }
 
 // The scales at which no product of this many coordinates, and no sum of four such products, can leave the scalar's
-// exponents. No matter how it is rounded, such a product is a multiple of 2^(factors * low), or 0.
+// exponent range. No matter how it is rounded, such a product is a multiple of 2^(factors * low), or 0.
 inline Scales scales_in_range(const Size& size, Scalar scalar, int factors) {
   const ScalarLimits& limits = limits_of(scalar);
   // Both divisions round inwards.

@@ -83,7 +83,7 @@ strata::PairSource changed(strata::PairSource source, const Change& change) {
 // The errors under each policy, on all pairs of the sources.
 using Sweep = std::function<std::vector<PolicyErrors>(Policies policies, Sources sources)>;
 
-// The code that decides under a policy. foreign: a user's lane, so that failures and its convention are counted; null
+// The code that decides under a policy. foreign: the user's lane, whose failures and convention are then counted; null
 // for our own lanes.
 struct LaneDecider {
   DecideBlock block;

@@ -50,8 +50,8 @@ class Tally {
   void add(const Tally& other);
   void add(Bucket b, std::uint64_t pairs, std::uint64_t intersects);
   void add(Bucket b, int lane, const LaneCounts& counts);
-  // Moves one pair from the count of that verdict to the count by convention.   stored: whether the pair was counted as
-  // stored too.
+  // Moves one pair from the count of that verdict to `by_convention`.   stored: whether the pair was also counted in
+  // `stored`.
   void excuse(Bucket b, int lane, Verdict verdict, bool stored = false);
 
   int lane_count() const { return static_cast<int>(cpu_twin_.size()); }

@@ -42,8 +42,8 @@ struct TuneSpec {
   Sweep sweep;
   bool by_value = false;                    // the tolerance is the value of an epsilon in a user's source
   std::vector<std::string> sites;           // sites at which the lane compares; none if by_value
-  std::vector<strata::PairSource> sources;  // pairs used to choose
-  std::vector<strata::PairSource> others;   // pairs to verify the choice on
+  std::vector<strata::PairSource> sources;  // pairs on which the policy is chosen
+  std::vector<strata::PairSource> others;   // other pairs, on which the choice is verified
   Forbid forbid = Forbid::any;
   double max_rate = 1e-6, max_other = 0.1;  // limits on the rates of forbidden errors and of other errors
 };
@@ -71,17 +71,17 @@ struct Interaction {
 enum class TuneResult {
   satisfied,        // the upper bounds of both rates are at most max_rate and max_other
   too_few_pairs,    // few enough errors, but on too few pairs to prove it
-  not_confirmed,    // few enough forbidden errors on the pairs used to choose, but too many on the other pairs
-  not_satisfiable,  // every policy has too many forbidden errors on the pairs used to choose; the chosen one has fewest
+  not_confirmed,    // few enough forbidden errors on TuneSpec::sources, but too many on TuneSpec::others
+  not_satisfiable,  // every policy has too many forbidden errors on TuneSpec::sources; the chosen one has the fewest
   not_useful        // few enough forbidden errors, but a higher rate of other errors than max_other
 };
 
 struct Tuned {
-  PolicyErrors zero;  // on the pairs used to choose
+  PolicyErrors zero;  // on TuneSpec::sources
   std::vector<Curve> curves;
   std::string chosen;  // policy; empty: compare with zero exactly
   TuneResult result = TuneResult::not_satisfiable;
-  PolicyErrors confirmed, zero_confirmed;  // on the other pairs
+  PolicyErrors confirmed, zero_confirmed;  // on TuneSpec::others
   double bound = 1, other_bound = 1;       // upper bounds of both rates, computed from `confirmed`
   std::vector<std::string> dead;           // sites at which no tolerance changes any verdict
   ScaleBreak scale;
@@ -91,7 +91,7 @@ struct Tuned {
 // The upper bound on the rate of errors that are not forbidden; 0 if all errors are forbidden.
 double other_bound(const PolicyErrors& errors, Forbid forbid);
 
-// Judges the choice by its errors on the pairs used to choose and on the other pairs.
+// Judges the choice by its errors on TuneSpec::sources and on TuneSpec::others.
 TuneResult result_of(const PolicyErrors& chosen_on, const PolicyErrors& confirmed, Forbid forbid, double max_rate,
                      double max_other);
 

@@ -198,7 +198,7 @@ Stranger wrong_when_small(bool misses) {
   });
 }
 
-// Only the false positives double. The other errors are so many that the sum does not.
+// Only the false positives double. There are so many other errors that the sum of all errors does not double.
 TEST(Tune, FindsWhereTheForbiddenErrorsDouble) {
   TuneSpec spec;
   Stranger small = wrong_when_small(true);

@@ -122,7 +122,7 @@ TEST(UlpMap, FailuresOfForeignCodeHaveCellsOfTheirOwn) {
 
 TEST(UlpMap, CoordinatesAreTheFirstThatChangeVerdictsMost) {
   Pair pair = kOnTheDiagonal;
-  EXPECT_EQ(liveliest_coordinates(pair, {}), (MovedCoordinates{3, 4}));  // the end of a's edge away from the origin
+  EXPECT_EQ(liveliest_coordinates(pair, {}), (MovedCoordinates{3, 4}));  // the far end of a's edge x = y
   std::swap(pair.a[1], pair.a[2]);
   EXPECT_EQ(liveliest_coordinates(pair, {}), (MovedCoordinates{6, 7}));
   pair = kOnTheDiagonal;

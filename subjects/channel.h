@@ -38,7 +38,7 @@ struct Answers {
   signed char answers[kMostAsked];
 };
 
-// A message from the supervisor to the worker: the pairs to ask in a forward pass, and those to ask in a backward pass.
+// A message from the supervisor to the worker: the pairs to ask about in a forward pass, and those in a backward pass.
 struct Question {
   std::uint64_t nonce;
   std::int32_t worker;   // process id of the worker that is asked, which may end before it reads the question

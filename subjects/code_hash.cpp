@@ -170,7 +170,7 @@ bool starts_with_any(std::string_view text, std::initializer_list<std::string_vi
                      [&](std::string_view beginning) { return text.starts_with(beginning); });
 }
 
-// Whether the file is a relocatable object or an archive, which, unlike linker scripts, name no other files.
+// Whether the file is a relocatable object or an archive. Unlike linker scripts, these name no other files.
 bool is_object(const fs::path& file) {
   std::string bytes = beginning_of(file, 18);
   bytes.resize(18);
@@ -201,7 +201,7 @@ bool is_covered(const std::string& flag) {
 CodeHash hash_of_flags(const std::vector<std::string>& flags, std::uint64_t hash) {
   CodeHash code{hash, ""};
   std::set<std::string> uncovered;
-  bool takes_next = false;  // whether the next word is the value of the last flag, for the preprocessor
+  bool takes_next = false;  // whether the next word is the value of this preprocessor flag, as after -I
   for (const std::string& flag : flags) {
     code.hash = fnv1a(flag + '\n', code.hash);
     // A part of a word may also be a file name: -Wl,FILE, -Wl,--script=FILE, @FILE.

@@ -68,7 +68,7 @@ bool has_terminals() {
 // like "/" in a chroot.
 bool keep_private(const char* place) { return mount("none", place, nullptr, MS_REC | MS_PRIVATE, nullptr) == 0; }
 
-// In the new namespace: hides later mounts from outside. In a chroot, only "/" is not a mount point.
+// In the new namespace: hides later mounts from outside. In a chroot, "/" is not a mount point, but the others are.
 bool keep_mounts_private() {
   return keep_private("/") || (keep_private("/proc") && (keep_private("/dev/shm") || errno == ENOENT) &&
                                (!has_terminals() || keep_private("/dev/pts")));
@@ -124,7 +124,7 @@ std::vector<std::string> mount_points(const std::string& type_begins) {
 }
 
 // In the new namespace: hides the control groups. Root, or a user who owns some of them, could use them to freeze the
-// supervisor, or to take its memory and processor.
+// supervisor, or to take its memory and processor time.
 bool hide_control_groups() {
   for (const std::string& place : mount_points("cgroup")) {  // this finds cgroup2 too
     // A mount on top of a shared mount, as in a chroot, would be visible outside.
@@ -262,7 +262,7 @@ rlim_t tasks_of(uid_t user) {
   return tasks;
 }
 
-// The guardian waits until the supervisor ends, or kills it. Foreign code cannot reach the guardian, but may delay the
+// The guardian waits for the supervisor to end, or kills it. Foreign code cannot reach the guardian, but may delay the
 // supervisor's waits.
 [[noreturn]] void guard(pid_t supervisor, int control) {
   constexpr int kMostMilliseconds = 6000;  // the time in which the supervisor must end

@@ -10,8 +10,8 @@
 
 namespace graze::subjects {
 
-// Makes the supervisor process 1 of a new process namespace, and returns in the supervisor. In the namespace, foreign
-// code sees and signals only its own processes, and has its own shared memory and no control groups. When the
+// Starts the supervisor as process 1 of a new process namespace, and returns in the supervisor. In the namespace,
+// foreign code sees and signals only its own processes, and has its own shared memory and no control groups. When the
 // supervisor ends, the system ends the namespace. The calling process becomes the supervisor's guardian, and exits
 // after the supervisor. The guardian kills a supervisor that still runs 6 s after graze closed its end of `control`. If
 // no namespace is possible, returns in the calling process, as a subreaper. namespaces: whether to try a namespace.

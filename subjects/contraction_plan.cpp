@@ -43,7 +43,7 @@ Json kept_plan(const fs::path& file) {
   return plan.is_object() ? plan : Json();
 }
 
-// Keeps the plan for later runs; without room or permission they compile it again.
+// Keeps the plan for later runs. If it cannot be written, later runs compile the source again.
 void keep_plan(const Json& plan, const fs::path& file) {
   try {
     const Scratch scratch(cache_folder());

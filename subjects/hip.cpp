@@ -17,9 +17,9 @@ std::string why_no_hip() { return on_path("hipcc").empty() ? "no hipcc (install 
 
 ContractionPlan hip_plan(const fs::path& source, const std::string& function, std::string_view target,
                          const std::vector<std::string>& flags) {
-  // The flags leave out AMD's own library: hipcc may lack it for the target, and its functions become calls, in which
-  // nothing is fused. The last flag turns off dual instructions, which would join operations from two lines after all
-  // other steps.
+  // -nogpulib leaves out AMD's own library, which hipcc may lack for the target. Uses of its functions then stay calls,
+  // in which nothing is fused. The last flag turns off dual instructions, which would join operations from two lines
+  // after all other passes.
   const Recipe recipe{fmt::format("hipcc -x hip -O3 --offload-arch={} --cuda-device-only -nogpulib -mllvm "
                                   "-amdgpu-enable-vopd=0",
                                   target),

@@ -210,8 +210,8 @@ std::uint64_t processor_nanoseconds() {
   return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000 + static_cast<std::uint64_t>(now.tv_nsec);
 }
 
-// The processor's rounding mode, precision and treatment of subnormals after the code was loaded. If the code changes
-// them, its answers for later pairs would change.
+// The processor's rounding mode, precision and treatment of subnormals after the code was loaded. A change that
+// stayed in force would change the answers for later pairs.
 class FloatControl {
  public:
   FloatControl() : modes_(modes()), x87_(x87()) {}
@@ -258,7 +258,7 @@ class Asking {
     const std::uint64_t start = processor_nanoseconds();
     for (std::size_t i = 0; i < question.count; ++i) {
       if (!is_chosen(question.first, i)) continue;
-      if (block_ && !question.singly) {  // such a question asks about all pairs
+      if (block_ && !question.singly) {  // then the question is about all pairs
         ask_block(question, false, 0, question.count);
         break;
       }
@@ -266,8 +266,8 @@ class Asking {
     }
     const std::uint64_t taken = processor_nanoseconds() - start;
     if (block_ && !question.singly) {
-      // Asks in parts that begin at odd places. So modulo any power of two, almost every pair gets another place in its
-      // block.
+      // Asks in parts that begin at odd indices, so that almost every pair gets another index in its block, modulo any
+      // power of two.
       const std::size_t half = std::min<std::size_t>(question.count, question.count / 2 | 1);
       const std::size_t first = std::min<std::size_t>(half, 3);
       ask_block(question, true, half, question.count);

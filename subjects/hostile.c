@@ -353,7 +353,7 @@ static void keep_memory(void) {
   abort();
 }
 ATTACK(keeps_memory, keep_memory())
-// Whether the device can be opened, unless the harmless null device has been mounted over it.
+// Whether the device itself can be opened, not the harmless null device mounted over it.
 static int can_open_device(const char* name) {
   struct stat at;
   int fd = open(name, O_RDONLY | O_NOCTTY | O_NONBLOCK);

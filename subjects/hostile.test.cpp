@@ -325,7 +325,7 @@ TEST_F(Hostile, PageTablesAreMemory) {
     return true;
   };
   for (const std::uint64_t most :
-       {std::uint64_t{1} << 40, std::uint64_t{1} << 20})  // counting whole pages of files; counting shares of them
+       {std::uint64_t{1} << 40, std::uint64_t{1} << 20})  // counts files' pages fully; counts only shares of them
     EXPECT_GE(usage_after(read_pages, most), std::min<std::uint64_t>(kPages * 4096, most));
 }
 
@@ -740,7 +740,7 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
                   scratch.path(), said);
     });
     EXPECT_TRUE(names(error, {"head -c 300M", "100 MiB", "memory"}));
-    EXPECT_NE(run("truncate -s 2G large", 600), 0);  // a file without blocks
+    EXPECT_NE(run("truncate -s 2G large", 600), 0);  // a sparse file
     EXPECT_FALSE(fs::exists("large") && fs::file_size("large") > (std::uint64_t{1} << 30));
     fs::remove("large");
     {

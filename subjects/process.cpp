@@ -150,8 +150,8 @@ class HostProcess {
 
 namespace {
 
-// Returns: the code's description of itself. A program that fails when it is asked for one is loaded without being
-// asked.
+// Returns: the code's description of itself. If a program fails when it is asked for one, it is loaded again without
+// being asked.
 Loaded loaded_of(const Code& code) {
   if (code.kind == "command") {
     try {

@@ -11,7 +11,7 @@ namespace graze::subjects {
 // Each pair is asked twice, forward and then backward, so that state left behind by one call shows in another. Answers
 // are accepted only in the order of the question, and only once each. A word that is forged, early, late or for another
 // question changes nothing. A program's answers are not numbered: after one extra line, each later pair would get
-// another pair's answer. So either all answers to a question count, or none. Single questions find the pair that fails.
+// another pair's answer. So either all answers to a question count, or none. One-pair questions find the failing pair.
 class Questions {
  public:
   // of_blocks: whether the subject takes blocks of pairs. program: whether a program answers, line by line or block by

@@ -103,7 +103,7 @@ std::string source_as_built(const Lane& lane) {
 }
 
 // Whether a source text, or a file that it includes in quotes, uses something that depends on the build. An included
-// file that is not found in the folder counts as if it did, except if the source is Graze's own.   read: the files that
+// file that is not in the folder counts as one that does, except if the source is Graze's own.   read: the files that
 // were searched already.
 bool names_build(const std::string& text, const fs::path& folder, bool own, std::set<fs::path>& read) {
   static const std::regex names(

@@ -55,7 +55,7 @@ std::vector<FusedLine> fused_lines_of(const Lane& lane);
 
 // Whether the lane's source, or a file that it includes in quotes, uses something that depends on the build, such as
 // __FMA__ or sizeof. If so, a build with other flags or types may contain different code, whose verdicts show nothing
-// about this one.
+// about the lane's code.
 bool selects_by_build(const Lane& lane);
 
 // Whether the lane is built from a C or C++ source whose file exists and is unchanged.

@@ -94,7 +94,7 @@ TEST_F(Rebuilt, ChangesAreSeenInVerdicts) {
   EXPECT_EQ(said(changed(lane, {.flags = {"-ftrivial-auto-var-init=pattern"}}), pair), Verdict::disjoint);
 }
 
-// No matter how many threads ask, only the builds and a few processes remain. A build has one descriptor, a process has
+// No matter how many threads ask, only the builds and a few processes remain. A build has one descriptor; a process has
 // two.
 TEST_F(Rebuilt, FewProcessesStay) {
   const Lane& lane = opened_lane(

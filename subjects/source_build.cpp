@@ -144,8 +144,8 @@ bool may_include_by_assembler(std::string preprocessed) {
   return preprocessed.find("incbin") != preprocessed.npos || preprocessed.find(".include") != preprocessed.npos;
 }
 
-// Whether the assembler can list the files that it reads. GNU as can list them; clang's own assembler cannot. With
-// -flto, code is assembled at link time, without a list.
+// Whether the assembler can list the files that it reads. GNU's assembler can; clang's cannot. With -flto, code is
+// assembled at link time, without a list.
 bool assembler_lists_files(const std::string& compiler, const std::vector<std::string>& flags, const Scratch& scratch) {
   if (std::any_of(flags.begin(), flags.end(), [](const std::string& flag) { return flag.starts_with("-flto"); }))
     return false;
@@ -286,7 +286,7 @@ struct Wrapped {
   std::string expected;  // the compiler's message if the function has other types
 };
 
-// Writes the file that is to be compiled. It is in `folder`.
+// Writes the file to compile into `folder`.
 Wrapped wrapped(const fs::path& source, const std::string& function, const Recipe& recipe,
                 const std::vector<std::string>& flags, const fs::path& folder) {
   const bool c = is_c(source);
@@ -358,7 +358,7 @@ Built build_source(const fs::path& source, const std::string& function, const Re
                    ? fmt::format("there is no compiler '{}'; install one{}", compiler,
                                  recipe.is_program ? "" : std::string(", or name it in ") + (c ? "CC" : "CXX"))
                    : fmt::format("'{} --version' ended with exit status {}", compiler, status)));
-  // On another machine's PATH, the same compiler version may use other parts, and the compiler may be a script.
+  // On another machine, the same compiler version may find other parts on the PATH, and the compiler may be a script.
   identity += shell_output(
       // Reads the name from a file: a pipe would also wait for processes that the compiler leaves behind.
       fmt::format("for part in as ld {1}; do {0} -print-prog-name=$part > {3} 2>/dev/null; read -r name < {3}; "

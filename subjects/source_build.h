@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds a user's C or C++ source, or a CUDA source whose function is __host__ __device__: a shared object for a host
-// variant, a program for a toolchain. Builds are cached by a hash of all their inputs.
+// Builds a user's C or C++ source, or a CUDA source whose function is __host__ __device__: as a shared object for a
+// host variant, or as a program for a toolchain. Builds are cached by a hash of all their inputs.
 #pragma once
 
 #include <filesystem>

@@ -13,7 +13,7 @@ struct Limits {
   std::uint64_t bytes = 0;  // memory of all the code's processes together; 0: no limit
   bool program = false;     // whether a separate program answers
   bool has_code = true;     // whether there is a file to load
-  bool system_v = false;    // the code may make System V memory, semaphores and message queues, as they have limits
+  bool system_v = false;    // System V memory, semaphores and message queues have limits, so the code may make them
 };
 
 // Answers blocks on kControlFd until graze closes that socket. Then ends all processes that it started, and exits.

@@ -82,7 +82,7 @@ dev_t shared_device() {
   return file.st_dev;
 }
 
-// Adds the shared memory that the process maps to `shared`.   Returns: the bytes that were not counted before.
+// Adds to `shared` the shared memory that the process maps.   Returns: the bytes that were not counted before.
 std::uint64_t add_shared(std::ifstream& maps, const fs::path& folder, Shared& shared) {
   static const dev_t device = shared_device();
   std::uint64_t more = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the arithmetic of devices in 2012 with exact arithmetic. Without its peculiarities, it must equal float's.
+// Compares the arithmetic of devices in 2012 with exact arithmetic. With no peculiarity set, it must equal float's.
 #include "subjects/examples/device_2012.h"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ TEST(Device2012, TruncatesProductsAsExactArithmeticDoes) {
   for (int i = 0; i < kTimes; ++i) {
     const float a = any_float(), b = any_float();
     float c = any_float();
-    if (i % 2 == 0) c = std::ldexp(-a * b, int(bits() % 7) - 3);  // of a size like the product's
+    if (i % 2 == 0) c = std::ldexp(-a * b, int(bits() % 7) - 3);  // about as large as the product
     if (c == 0 || !std::isfinite(c)) continue;
     beyond_floats += std::abs(a * b) < FLT_MIN || std::isinf(a * b);
     const float found = truncating_mad(a, b, c);

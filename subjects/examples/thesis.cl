@@ -90,8 +90,8 @@ Line common_line(const Plane* p, const Plane* q, REAL3 direction) {
   return line;
 }
 
-// The vertex that is alone on its side, or else a vertex on the line. If the other two vertices are on opposite sides,
-// the vertex on the line must not be last.
+// The vertex that is alone on its side, or else a vertex on the line. If one vertex is on the line and the others are
+// on opposite sides, then one of these others.
 int vertex_to_put_last(const REAL* distance) {
   int positive = 0, negative = 0, first_positive = 2, first_negative = 2, first_zero = 2;
   for (int i = 2; i >= 0; --i) {

@@ -14,8 +14,8 @@
 //   fast     -cl-fast-relaxed-math
 // In all modes but `fast`, division and square root are rounded correctly if the device can do so. The device decides
 // how to treat subnormal numbers.
-// PLATFORM is a part of a platform's name. Without it, the first platform with a GPU answers, else the first with any
-// device.
+// PLATFORM is a part of a platform's name. Without it, the program uses the first platform with a GPU, else the first
+// with any device.
 // The environment variable GRAZE_OPENCL names the library to load: a driver loader, or a driver such as
 // libnvidia-opencl.so.1. The default is libOpenCL.so.1.
 // Exit status: 1 a call failed; 2 wrong use; 3 no library, or no device; 4 the source does not compile.
@@ -65,9 +65,9 @@ std::string line_1_of(const std::string& file) {
   return "#line 1 \"" + name + "\"\n";
 }
 
-// The subject's source, followed by a kernel that calls the function, and then a declaration of it. A missing function
-// makes the call an error; other types make the declaration an error. (In C, a call with pointers to another type only
-// gets a warning.)
+// The subject's source, followed by a kernel that calls the function, and then the function's declaration. A missing
+// function makes the call an error; other types make the declaration an error. (In C, a call with pointers to another
+// type only gets a warning.)
 std::string with_kernel(const Subject& subject, bool in_double) {
   std::string text;
   if (in_double) text += "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n";
@@ -145,8 +145,8 @@ class OnDevice {
 
   bool has(bool in_double) const { return kernels_[in_double].id != nullptr; }
 
-  // Compiles the subject for float or double. Some devices compile a kernel only when it first runs, so this runs it
-  // once, without pairs, because a call of the subject could fail. Returns: the first error in the source; empty if
+  // Compiles the subject for float or double. Some devices compile a kernel only when it first runs, so this function
+  // also runs it, but on no pairs, because the subject could fail. Returns: the first error in the source; empty if
   // there is none.
   std::string compile(bool in_double) {
     if (in_double && !device_.has_double()) return device_.text(CL_DEVICE_NAME) + " has no double";

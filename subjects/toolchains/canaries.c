@@ -318,8 +318,8 @@ static void T(division)(void) {
 }
 
 /* Half of the roots are near the middle between two numbers: 4 x 2^shift is middle^2 - d, with a small d and an odd
- * `middle` of DIGITS + 1 digits. So `middle` is a root of d modulo 2^(shift + 2). As d is 1 modulo 8, it has four such
- * roots. */
+ * `middle` of DIGITS + 1 digits. So `middle` is a root of d modulo 2^(shift + 2). Because d is 1 modulo 8, it has four
+ * such roots. */
 static void T(root)(void) {
   unsigned wrong = 0, asked = 0;
   for (uint64_t i = 1; asked < 4096; ++i) {

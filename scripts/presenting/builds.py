@@ -48,7 +48,7 @@ def riddle(r):
         f"A thesis of 2012 saw CPU and GPU differ on {one_in(1, saw)} verdicts; contraction explains "
         f"{one_in(differ, pairs)}, about a {backed('third')} of it",
         f"A thesis of 2012 ran its triangle test on an Intel CPU and on a GTX 590. On average {one_in(1, saw)} "
-        "verdicts differed, and it could not say why. We ran its algorithm, `interval_overlap` in float32, on "
+        "verdicts differed, and its author could not say why. We ran its algorithm, `interval_overlap` in float32, on "
         f"{count(pairs)} pairs drawn as the thesis drew them, on an H100 and on a CPU. {count(differ)} verdicts "
         f"differ: {one_in(differ, pairs)} (95 % interval {one_in_interval(differ, pairs)}), which is "
         f"{percent(share, 1)} of the thesis's rate. By default nvcc computes `a * b + c` with one rounding "
@@ -96,12 +96,12 @@ def hosts(r):
     )
     return Result(
         "hosts",
-        f"The nearest model of the machines of 2012 differs on {one_pair_in(nearest)}, but only with the "
-        "thesis's second reference triangle",
+        f"In the nearest model of the machines of 2012, CPU and GPU differ on {one_pair_in(nearest)}, but only with "
+        "the thesis's second reference triangle",
         f"Contraction alone does not explain {one_in(1, saw)}. Which arithmetic of 2012 could? We compared {word(3)} "
         f"hosts with {word(len(devices))} models of devices, on {count(of(special))} pairs for each of the thesis's "
-        "reference triangles. With the reference of its special cases, a host that computes on the x87 differs from a "
-        f"device that fuses on {one_pair_in(fused)}. If the device also divides as badly as its documentation allows, "
+        "reference triangles. With the reference of its special cases, a host that computes on the x87 and a device "
+        f"that fuses differ on {one_pair_in(fused)}. If the device also divides as badly as its documentation allows, "
         f"they differ on {one_pair_in(nearest, '')} ({count(its[0])} to {count(its[1])}, 95 %). With the reference of "
         f"the random triangles, the nearest model differs on {one_pair_in(best, '')} ({count(best_its[0])} to "
         f"{count(best_its[1])}). The devices' division is a model, and we ran no GPU of 2012. The thesis does not say "
@@ -144,9 +144,10 @@ def fast_math(r):
         "fast_math",
         f"Fast math changes {percent(min(fast), pairs)} to {percent(max(fast), pairs)} of the float32 verdicts on hard "
         f"pairs; contraction alone changes {percent(min(fused), pairs)} to {percent(max(fused), pairs)}",
-        "The same source, compiled with `-O3 -ffast-math -march=x86-64-v3` and with contraction alone, decides the "
-        f"{count(pairs)} pairs of the default campaign, most of them near contact. The figure counts verdicts that "
-        "differ from those of the build that rounds every operation as written. For each test, contraction alone "
+        "The same source, compiled once with `-O3 -ffast-math -march=x86-64-v3` and once with contraction alone, "
+        f"decides the {count(pairs)} pairs of the default campaign, most of them near contact. The figure counts "
+        "verdicts that differ from those of the build that rounds every operation as written. For each test, "
+        "contraction alone "
         f"changes at least {percent(least_share, 1, 2, math.floor)} as many verdicts as fast math. A changed verdict "
         "may be "
         f"right or wrong: {word(more)} of {word(len(errors))} lanes ({word(len(ALGORITHMS))} tests, float32 and "

@@ -38,7 +38,7 @@ def stored(r):
         "stored",
         f"Stored in float32, surveys in map coordinates give another verdict on {share(exact, 'survey')} of their "
         f"near pairs; with a local origin, on {share(exact, 'local')}",
-        "What does it cost to store a model of doubles in float32, as everyone does who uploads it to a GPU? For "
+        "What does it cost to store a model of doubles in float32, for example to upload it to a GPU? For "
         "models that lie near each other, we took all pairs of triangles whose boxes overlap, and compared the exact "
         "verdict on the stored triangles with that on the doubles. For surveys of the same ground, in UTM "
         "coordinates, storing changes "

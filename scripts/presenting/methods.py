@@ -231,9 +231,10 @@ def epsilon(r):
     return Result(
         "epsilon",
         f"The best epsilon of `guigue_devillers_2003` fixes {count(fixes)} verdicts and breaks {count(breaks)} others",
-        "An epsilon makes nearly zero count as zero. With it, a test finds touching pairs that it "
-        "would miss because of rounding, but also reports disjoint pairs. We swept the tolerance of the plane distances of `guigue_devillers_2003` in float32 "
-        f"over all strata. On {count(pairs)} pairs other than those on which it was chosen, the best value lowers "
+        "An epsilon makes numbers near zero count as zero. With it, a test finds touching pairs that it would miss "
+        "because of rounding, but also calls some disjoint pairs intersecting. We swept the tolerance of the plane "
+        f"distances of `guigue_devillers_2003` in float32 over all strata. On {count(pairs)} pairs "
+        "other than those on which it was chosen, the best value lowers "
         f"false negatives from {percent(missed_before, pairs)} to {percent(missed, pairs)}, and raises false positives "
         f"from {percent(false_before, pairs)} to {percent(false, pairs)} (each share to within "
         f"{within_points((missed_before, pairs), (false, pairs))}, 95 %). It fixes more than it breaks. But no "

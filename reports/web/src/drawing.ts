@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Prepares a pair to be drawn: fits it into a box of half-width 1, and projects it along a direction. Both steps
-// are affine, so they preserve straight lines and contacts. Uses doubles, because a card's coordinates range from
-// 2^-149 to 2^128.
+// are affine, so they preserve straight lines and contacts. Uses doubles, because a float32 card has coordinates from
+// 2^-149 to 2^128, and a card of doubles a larger range.
 import { figure } from './format';
 import type { Report } from './report';
 

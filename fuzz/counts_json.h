@@ -21,7 +21,7 @@ inline constexpr CountField kCountFields[] = {{"false_positive", &Counts::false_
                                               {"unstable", &Counts::unstable, true},
                                               {"by_convention", &Counts::by_convention, true}};
 
-// Returns an object with all fields. The fields of foreign code are included only if `foreign` is true.
+// Returns the counts as an object; the fields of foreign code are included only if `foreign` is true.
 inline nlohmann::ordered_json counts_json(const Counts& counts, bool foreign = false) {
   nlohmann::ordered_json row = nlohmann::ordered_json::object();
   for (const CountField& field : kCountFields) {
@@ -30,8 +30,8 @@ inline nlohmann::ordered_json counts_json(const Counts& counts, bool foreign = f
   return row;
 }
 
-// Reads such an object. Unknown fields are ignored, and the fields of foreign code may be missing.
-// Throws: Json::exception if any other field is missing or is not a count.
+// Reads an object of counts_json. Unknown fields are ignored, and the fields of foreign code may be missing.
+// Throws: Json::exception if a required field is missing, or a known field is not a count.
 inline Counts counts_of(const nlohmann::ordered_json& row) {
   Counts counts;
   for (const CountField& field : kCountFields) {

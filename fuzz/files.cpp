@@ -36,7 +36,7 @@ struct Handle {
   }
 };
 
-// Waits until the pipe is ready. Its other end may never open, so this checks for a request to stop.
+// Waits until the pipe is ready. The pipe's other end may never open, so the wait also ends on a request to stop.
 void wait_for(int handle, short events) {
   pollfd ready{handle, events, 0};
   while (poll(&ready, 1, 100) <= 0) {
@@ -98,7 +98,7 @@ void write_into(const fs::path& file, bool pipe, bool standard_output, const std
 
 // Creates a new file that only this writer uses. Other writers wait until this one has renamed it. A file left by a
 // killed writer is removed and never written to, because it may be a hard link to another user's file.
-// Returns: its descriptor; negative on failure, with the reason in errno.
+// Returns: the file's descriptor; negative on failure, with the reason in errno.
 int made_alone(const std::string& file) {
   while (true) {
     int number = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -188,7 +188,7 @@ void write_whole(const fs::path& file, const std::string& text, NamedBy named_by
   if (!exists && errno != ENOENT) fail("write", file, errno);
   if (exists && (named_by == NamedBy::graze || S_ISDIR(there.st_mode)))
     expect_mode_of_file("write", file, there.st_mode);
-  // Standard output may be a file too. Replacing it would lose everything else that is printed.
+  // If standard output is a file, replacing that file would lose everything else that is printed.
   const bool standard_output = exists && is_standard_output(there);
   if (exists && (standard_output || !S_ISREG(there.st_mode)))
     return write_into(file, S_ISFIFO(there.st_mode), standard_output, text);

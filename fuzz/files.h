@@ -11,13 +11,13 @@ namespace graze::fuzz {
 // Who chose a file's name. A user may name a pipe or a device; names that Graze chooses are always files.
 enum class NamedBy { graze, user };
 
-// The suffix of the temporary name, in the same folder. A merge also gives its folder a temporary name.
+// The suffix of a temporary file, which is in the final file's folder, and of a merge's temporary folder.
 inline constexpr const char* kPart = ".graze.part";
 
 // Throws: std::runtime_error if this name, after following symbolic links, is a pipe, a device or a folder.
 void expect_file(const std::filesystem::path& file);
 
-// The file's bytes; empty if there is no file.   Throws: std::runtime_error if it cannot be read, or is a pipe or
+// The file's bytes; empty if there is no file.   Throws: std::runtime_error if the file cannot be read, or is a pipe or
 // device that yields more than 64 MiB.
 std::string read_whole(const std::filesystem::path& file, NamedBy named_by = NamedBy::graze);
 

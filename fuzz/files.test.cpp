@@ -102,7 +102,7 @@ TEST_F(Files, APartThatIsAHardLinkIsReplaced) {
   EXPECT_EQ(fs::hard_link_count(folder_ / "theirs"), 1u);
   EXPECT_EQ(read_whole(folder_ / "a"), "new");
   EXPECT_EQ(count(), 2u);
-  // A killed writer may have left a longer file. None of its text may remain.
+  // A killed writer may have left a longer temporary file, none of whose text may remain.
   write_whole(folder_ / "a.graze.part", std::string(100'000, 'x'));
   write_whole(folder_ / "a", "newer");
   EXPECT_EQ(read_whole(folder_ / "a"), "newer");
@@ -185,7 +185,7 @@ TEST_F(Files, WaitingForAPipeStops) {
   stop_requested = false;
 }
 
-// Creates a null device in the test's folder, which only root may do.
+// Creates a null device in the test's folder; only root may create devices.
 TEST_F(Files, DevicesStayDevices) {
   const fs::path device = folder_ / "null";
   if (mknod(device.c_str(), S_IFCHR | 0600, makedev(1, 3)) != 0) GTEST_SKIP() << "may not create a device node";

@@ -24,9 +24,9 @@ std::vector<std::string> first_keys(const nlohmann::ordered_json& object) {
   return keys;
 }
 
-// The text that marks files of the same kind as `text`. For a JSON object it is the text up to the end of the first
-// key; for a page, the start of the title; for a PNG, the start of the palette. For other files it is the first line up
-// to `>`, because the rest of the line differs between pictures.
+// The text that marks files of the same kind as `text`. For a JSON object, the mark is the text up to the end of the
+// first key; for a page, the start of the title; for a PNG, the start of the palette; for other files, the first line
+// up to `>`, because the rest of an SVG's first line varies.
 std::string mark_of(const std::string& text) {
   constexpr std::string_view kTitle = "<title>Graze: ", kPalette = "PLTE";
   constexpr std::size_t kColours = 24;  // bytes: the first eight colours, which all ulp maps share
@@ -38,7 +38,7 @@ std::string mark_of(const std::string& text) {
   return text.substr(0, text.find_first_of(">\n"));
 }
 
-// Whether both are objects with the same first two keys; `there` may be damaged after the first key.
+// Whether both texts are objects with the same first two keys; `there` may be damaged after the first key.
 bool same_kind_of_object(const std::string& there, const std::string& text) {
   const auto theirs = nlohmann::ordered_json::parse(there, nullptr, false),
              ours = nlohmann::ordered_json::parse(text, nullptr, false);
@@ -89,7 +89,7 @@ bool may_fill(const fs::path& folder, std::initializer_list<const char*> own) {
   const auto has_own = [&] {
     return std::any_of(own.begin(), own.end(), [&](const char* name) { return fs::exists(folder / name); });
   };
-  // Checked again at the end, because another process of Graze may have written there meanwhile.
+  // Checked again at the end, because another Graze process may have written there meanwhile.
   return has_own() ||
          std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
                      [](const auto& e) { return is_nothing(e.path()); }) ||

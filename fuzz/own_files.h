@@ -21,15 +21,15 @@ inline constexpr const char* kForeign =
 // Set by --force for the whole process: even files that Graze did not write may be replaced.
 inline bool may_replace_foreign = false;
 
-// Throws: UsageError if Graze did not write the file. It must begin like this text if it has the name of a campaign's
-// file, is in cases/, or is behind a link. A file that is damaged only after its beginning may be replaced.
+// Throws: UsageError if the file has the name of a campaign's file, is in cases/ or is behind a link, but does not
+// begin like this text. A file that is damaged only after its beginning may be replaced.
 void expect_own(const std::filesystem::path& file, const std::string& text);
 
 // Whether the file is left over from an interrupted write: its name ends in kPart.
 bool is_left_over(const std::filesystem::path& file);
 
-// Whether results may be written to the folder. It must be missing, hold one of the files `own`, or hold only empty
-// folders and leftovers of killed writes.
+// Whether results may be written to the folder. The folder must be missing, hold one of the files `own`, or hold only
+// empty folders and leftovers of killed writes.
 bool may_fill(const std::filesystem::path& folder, std::initializer_list<const char*> own);
 
 }  // namespace graze::fuzz

@@ -45,7 +45,7 @@ void sort_lanes(SelectedLanes& under_test, const Place& place) {
   under_test.on_host = std::move(sorted.on_host);
 }
 
-// Lanes with a policy are at the end of the table. This moves each one next to the other lanes of its subject.
+// Moves each lane with a policy from the end of the table to the other lanes of its subject.
 void sort_by_subject(SelectedLanes& under_test) {
   std::map<const AlgorithmInfo*, std::size_t> places;
   for (const Lane* lane : under_test.lanes) places.emplace(lane->info, places.size());

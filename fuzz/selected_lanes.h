@@ -38,7 +38,7 @@ struct SelectedLanes {
   std::vector<const Lane*> device_lanes() const;
   // Removes the lanes for which `keep` returns false.
   void keep_if(const std::function<bool(const Lane&)>& keep);
-  // Whether the lane runs on the device and also as its twin, for comparison. The device's verdicts are the lane's.
+  // Whether the lane runs on the device and, for comparison, also as its twin. The device's verdicts then count.
   bool on_both(std::size_t l) const { return on_device(l) && on_host[l]; }
   // Where the lane's verdicts come from: "device", "twin, verified on …", "twin", "device and twin, …". Empty for
   // code that this processor runs itself.

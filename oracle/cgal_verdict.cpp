@@ -16,13 +16,13 @@ namespace graze::oracle {
 namespace {
 
 // Plain arithmetic on 128-bit integers. Every do_intersect below between points, segments and triangles uses only
-// comparisons of coordinates and signs of determinants of degree three at most, never a quotient. (In CGAL 5.5's
-// source, they use orientation, coplanar_orientation, collinear and, for two segments, points p + v of a line.)
+// comparisons of coordinates and signs of determinants of degree three at most, never a quotient. (In CGAL 5.5, these
+// tests use orientation, coplanar_orientation, collinear and, for two segments, points p + v of a line.)
 using SmallKernel = CGAL::Simple_cartesian<boost::int128_type>;
 
-// Filtered double arithmetic, for pairs with more bits, if all coordinates are multiples of 2^-300 and below 2^300.
-// This includes all float32 pairs. A product of three differences is then zero or lies between 2^-900 and 2^903. So
-// nothing overflows or underflows, and the filters' error bounds hold.
+// Filtered double arithmetic, for pairs with more bits, if all coordinates are multiples of 2^-300 and below 2^300, as
+// in all float32 pairs. A product of three differences is then zero or lies between 2^-900 and 2^903, so nothing
+// overflows or underflows, and the filters' error bounds hold.
 using WideKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 constexpr int kWideExponents = 300;

@@ -12,8 +12,8 @@ namespace graze::oracle {
 // Requires: finite coordinates.   Exact: except for the rounding to double.
 std::vector<Vec3<double>> common_set(const AnyPair& pair);
 
-// Two points on the line where the triangles' planes meet. They bound its part within the pair's box, enlarged by a
-// tenth on each side. No points if a triangle is flat, the planes are parallel, or the line misses the box.
+// The line where the triangles' planes meet: the two ends of its part within the pair's box, enlarged by a tenth on
+// each side. No points if a triangle is flat, the planes are parallel, or the line misses the box.
 // Requires: finite coordinates.   Exact: like common_set.
 std::vector<Vec3<double>> planes_line(const AnyPair& pair);
 

@@ -25,7 +25,7 @@ void vertex_and_vertex(SquaredMargin& least, const Vector& p, const Vector& q) {
   keep_least(least, dot(between, between), 1);
 }
 
-// The distance of a vertex from an edge. It counts only if the foot of the perpendicular lies on the edge.
+// The distance of a vertex from an edge, which counts only if the foot of the perpendicular lies on the edge.
 void vertex_and_edge(SquaredMargin& least, const Vector& p, const Vector& start, const Vector& edge) {
   const Vector at = p - start;
   const Int along = dot(at, edge), length2 = dot(edge, edge);
@@ -34,7 +34,7 @@ void vertex_and_edge(SquaredMargin& least, const Vector& p, const Vector& start,
   keep_least(least, dot(moment, moment), length2);
 }
 
-// The distance of a vertex from a face. It counts only if the foot of the perpendicular lies in the face.
+// The distance of a vertex from a face, which counts only if the foot of the perpendicular lies in the face.
 void vertex_and_face(SquaredMargin& least, const Vector& p, const Vector (&face)[3]) {
   const Vector n = cross(Vector(face[1] - face[0]), Vector(face[2] - face[0]));
   if (is_zero(n)) return;
@@ -46,7 +46,7 @@ void vertex_and_face(SquaredMargin& least, const Vector& p, const Vector (&face)
   keep_least(least, Int(height * height), dot(n, n));
 }
 
-// The distance between two edges. It counts only if their common perpendicular meets both. w: v's start minus u's.
+// The distance between two edges, which counts only if their common perpendicular meets both. w: v's start minus u's.
 void edge_and_edge(SquaredMargin& least, const Vector& w, const Vector& u, const Vector& v) {
   const Vector n = cross(u, v);
   if (is_zero(n)) return;
@@ -119,7 +119,7 @@ int floor_log2(const SquaredMargin& margin) {
 double rounded(const SquaredMargin& margin) {
   if (margin.numerator == 0) return 0;
   // root = floor(sqrt(numerator / denominator) * 2^shift) has at least 64 bits. The root is doubled, and its lowest bit
-  // is set if it was truncated. It then rounds to 53 bits exactly like the untruncated root.
+  // is set if the root was truncated; the result rounds to 53 bits exactly like the untruncated root.
   const int shift = 64 - (floor_log2(margin) - margin.exponent);
   Int numerator = margin.numerator, denominator = margin.denominator;
   if (shift > 0) numerator <<= static_cast<unsigned>(2 * shift);

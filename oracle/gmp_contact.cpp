@@ -2,7 +2,7 @@
 // The independent decision: counts the common set's extreme points, using signs of determinants of GMP integers.
 //
 // A point x of A ∩ B lies in the relative interior of exactly one face (vertex, edge, triangle) of A and one of B.
-// It is extreme in A ∩ B if and only if those two faces have no direction in common. So the extreme points are:
+// The point x is extreme in A ∩ B if and only if these two faces share no direction. So the extreme points are:
 //   vertices of A in B, and vertices of B in A that are not vertices of A,
 //   points where an open edge crosses an open edge that is not parallel to it,
 //   points where an open edge pierces an open triangle that it is not parallel to.
@@ -130,8 +130,8 @@ Contact pierced(Workspace<Number>& work, const Simplex<Number>& segment, const S
   return locate(side).place == Place::outside ? Contact::none : Contact::point;
 }
 
-// Two simplices in one plane or on one line, projected by dropping the coordinate `dropped`. Distinct points of the
-// plane or line stay distinct.
+// Two simplices in one plane or on one line, projected by dropping the coordinate `dropped`, which keeps distinct
+// points distinct.
 template <class Number>
 struct Planar {
   Workspace<Number>& work;
@@ -216,7 +216,7 @@ Contact flat_with_triangle(Workspace<Number>& work, const Simplex<Number>& a, co
   return pierced(work, a, b);
 }
 
-// Decides two points or segments. Together they span a line, a plane, or, if they are skew segments, space.
+// Decides two points or segments, which together span a line, a plane, or, as skew segments, space.
 template <class Number>
 Contact flat_with_flat(Workspace<Number>& work, const Simplex<Number>& a, const Simplex<Number>& b) {
   if (a.count < b.count) return flat_with_flat(work, b, a);

@@ -28,7 +28,7 @@ inline void sub_mul(Register& out, const Register& p, const Register& q) { mpz_s
 inline int compare(const Register& p, const Register& q) { return mpz_cmp(p.value, q.value); }
 inline void exchange(Register& p, Register& q) { mpz_swap(p.value, q.value); }
 
-// An integer modulo 2^128, in [-2^127, 2^127). It uses GMP's limb functions, which do not branch on signs.
+// An integer modulo 2^128, in [-2^127, 2^127). Operations use GMP's limb functions, which do not branch on signs.
 struct TwoLimbs {
   mp_limb_t limb[2];
   int sign() const { return limb[1] >> 63 ? -1 : (limb[0] | limb[1]) != 0; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair as integers: each coordinate is an integer times a power of two that all 18 coordinates share. This factor
-// does not affect the signs of determinants; lengths are multiplied by it at the end. Float32 pairs are widened.
+// A pair as integers: each coordinate is an integer times a power of two that all 18 coordinates share. The power of
+// two does not affect the signs of determinants; lengths are multiplied by it at the end. Float32 pairs are widened.
 #pragma once
 
 #include <cstdint>

@@ -31,7 +31,7 @@ SquaredMargin exact_margin(const BasicPair<Real>& pair, Verdict verdict) {
                                       : exact_depth(large, grid.exponent, kAllAxes);
 }
 
-// Checks that the bounds allow the expected bucket.   Returns: whether they allow only one bucket.
+// Checks that the bounds allow the expected bucket.   Returns: whether the bounds allow only one bucket.
 template <class Real>
 bool expect_bounds(const Pair& pair, Verdict verdict, double exact, Bucket expected) {
   const MarginBounds bounds = margin_bounds<Real>(pair, verdict);
@@ -143,8 +143,8 @@ TEST(MarginBounds, AreTightOnPairsInGeneralPosition) {
 using Long = Vec3<long double>;
 
 // Computes the distance in another way: as the origin's distance from the Minkowski difference, which is the convex
-// hull of the nine points b[j] - a[i]. Its point nearest to the origin lies on a simplex of one, two or three of these
-// points. Tries all 129 simplices in long double.
+// hull of the nine points b[j] - a[i]. The hull's point nearest to the origin is on a simplex of one, two or three of
+// them. Tries all 129 simplices in long double.
 long double distance_of_difference(const Pair& pair) {
   std::vector<Long> points;
   for (const auto& a : pair.a) {
@@ -361,7 +361,7 @@ TEST(GuessedDistance, BoundsHoldTheExactDistance) {
   EXPECT_GT(finite, 5000);
 }
 
-// Compares the errors with the values derived in quick_depth.h. No test on pairs comes near these values.
+// Compares the errors with the values derived in quick_depth.h, because tests on pairs do not come near these values.
 TEST(QuickDepth, ErrorsAreThoseDerivedAndNoMoreThanAPercentAbove) {
   const double u = 0x1p-24, overlap = 98 * u * (3 * 5 * 7), length = 8 * u * (5 * 7 + 7 * 3 + 3 * 5);
   const first_attempt::AxisErrors<float> errors({3, 5, 7}, u);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the margin's bucket. Certified bounds nearly always decide it: in double, or in double-double for pairs of
-// doubles. Exact integers decide the rest.
+// Finds the margin's bucket. Certified bounds, in double or, for pairs of doubles, in double-double, nearly always
+// decide the bucket; exact integers decide the rest.
 #include <cmath>
 
 #include "core/margin/margin.h"
@@ -13,7 +13,7 @@ namespace graze::oracle {
 namespace {
 
 // Whether the intersecting hulls only touch: along one of the given nonzero axes, they have no overlap.
-// Exact: always. An axis n has degree two, and an overlap n . (p - q) of two vertices has degree three (kSmallBits).
+// Exact: always. An axis n has degree two, and an overlap dot(n, p - q) of two vertices has degree three (kSmallBits).
 bool touches(const SmallPair& small, std::uint32_t axes) {
   const auto& [a, b] = widened(small);
   for (int axis = 0; axis < kSeparatingAxes; ++axis) {

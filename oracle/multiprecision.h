@@ -94,7 +94,7 @@ class Multi {
     exact_ = ternary == 0;
     if (tiny && !exact_ && first_event == 0) first_event = -1;
   }
-  // Whether the result is below the least normal number. A zero counts only if it was rounded to zero.
+  // Whether the result is below the least normal number: a zero counts as below only if rounding made it zero.
   bool ternary_is_tiny(int ternary) const {
     return mpfr_zero_p(m_) ? ternary != 0 : mpfr_get_exp(m_) < mpfr_get_emin() + mpfr_get_prec(m_) - 1;
   }

@@ -58,7 +58,7 @@ Path outcomes_of(const Trace<Ball>& run) {
   return outcomes;
 }
 
-// A run of the algorithm along a given path, with as many bits as it needs. Multi::precision stays at that number.
+// A run of the algorithm along a given path, with as many bits as it needs. Multi::precision keeps that number of bits.
 struct SettledRun {
   Trace<Ball> run;
   Exactly exactly;

@@ -27,20 +27,20 @@ struct Limited {
   RangeEvent first;  // the first result that the exponent limits changed
 };
 
-// Runs the algorithm with the scalar's mantissa, round to nearest even. With both limits it equals the cpu lane.
+// Runs the algorithm with the scalar's mantissa, round to nearest even. With both limits it is the cpu lane's run.
 // Requires: the scalar holds the coordinates.
 Limited decide_limited(int algorithm, Scalar scalar, const DoublePair& pair, Limits limits);
 
 // Like decide_limited, but records a trace, contracts by the rule, and follows the path `lead`. In the trace, a value
-// above the range of double becomes infinite, and a value below it becomes subnormal or zero.
+// too large for a double becomes infinite, and one too small becomes subnormal or zero.
 Trace<double> run_limited(int algorithm, Scalar scalar, const DoublePair& pair, Limits limits, Contraction rule,
                           const Path& lead = {});
 
 // Runs the algorithm with a mantissa of `bits` bits and no exponent limits.
 Verdict decide_with_bits(int algorithm, const DoublePair& pair, int bits);
 
-// The least number n of bits, n >= `least`, such that n to kMostBits bits all give this verdict. 0 if kMostBits bits do
-// not give it.
+// The least number n of bits, n >= `least`, such that n to kMostBits bits all give this verdict; 0 if kMostBits bits
+// give another verdict.
 inline constexpr int kMostBits = 512;
 int bits_needed(int algorithm, const DoublePair& pair, Verdict verdict, int least);
 
@@ -72,7 +72,7 @@ struct ExactStep {
   bool held;          // the outcome with the exact numbers
 };
 
-// The exact values for a lane's run, step by step, along the lane's path. Uses as many bits as that path needs.
+// The exact values for a lane's run, step by step, along the lane's path, with as many bits as this path needs.
 // Requires: `run` is a run of this algorithm in this scalar.
 std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const DoublePair& pair, const Trace<double>& run);
 

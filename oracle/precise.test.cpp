@@ -29,8 +29,8 @@ TEST(Ball, ARadiusHoldsBothErrors) {
   EXPECT_EQ(Ball::scaled(-7, 3), -4);
 }
 
-// With exponent limits, a result that underflows is zero, and one that overflows is infinite. Both count as exact, so
-// that later sums of radii do not overflow their signed integer.
+// With exponent limits, a result that underflows is zero, and one that overflows is infinite; both zero and infinity
+// count as exact, so that later sums of radii do not overflow their signed integer.
 TEST(Ball, ZeroAndInfinityOfALimitedRangeAreExact) {
   const mpfr_exp_t emin = mpfr_get_emin(), emax = mpfr_get_emax();
   mpfr_set_emin(-148);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The truth of a pair. It is exact for every pair with finite float32 or double coordinates, from subnormals to 1e308.
+// The truth of a pair, exact for every pair with finite float32 or double coordinates, from subnormals to 1e308.
 #pragma once
 
 #include <compare>
@@ -53,10 +53,10 @@ inline Contact gmp_contact(const Pair& pair) { return gmp_contact(in_doubles(pai
 Hulls hulls(const DoublePair& pair);
 inline Hulls hulls(const Pair& pair) { return hulls(in_doubles(pair)); }
 
-// The bucket of the exact margin. A certified double-precision estimate nearly always decides it; otherwise GMP does.
+// The bucket of the exact margin, nearly always decided by a certified double-precision estimate, and otherwise by GMP.
 // Requires: finite coordinates; verdict is the pair's true verdict.   Exact: always.
 Bucket margin_bucket(const Pair& pair, Verdict verdict);
-// The same for doubles, in double-precision ulps of the largest coordinate.
+// The same bucket for doubles: in double-precision ulps of the largest coordinate.
 Bucket margin_bucket(const DoublePair& pair, Verdict verdict);
 
 }  // namespace graze::oracle

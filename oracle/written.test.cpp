@@ -54,7 +54,7 @@ TEST(TruthAsWritten, IsNothingWhereEveryNumberIsStored) {
   EXPECT_THROW(oracle::rounded(words_of("1e-999999 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0"), Pair{}), std::runtime_error);
 }
 
-// Moving both triangles by a distance that float32 cannot represent keeps their truth. Scaling them scales the margin.
+// Moving both triangles by a distance that float32 cannot represent keeps their truth; scaling both scales the margin.
 TEST(TruthAsWritten, IsTheStoredTruthUnderExactMotions) {
   std::mt19937 random(12);
   int contacts[4] = {};

@@ -50,16 +50,15 @@ GRAZE_INLINE double draw_weight(auto& draws, const auto& grain) {
   return grain.place > 0 ? 1.0 + draws.below(static_cast<std::uint32_t>(grain.weight)) : draws.positive();
 }
 
-// How flat a triangle is. A sliver's height is a small fraction of its length. Its third vertex lies near an end of the
-// longest edge (needle) or anywhere along that edge (cap).
+// How flat a triangle is. A sliver's height is a small fraction of its length. A sliver's third vertex is near an end
+// of the longest edge (needle) or anywhere along that edge (cap).
 struct Shape {
   double height = 1;
   bool sliver = false;
   bool needle = false;
 };
 
-// The third vertex, relative to p, on the given side. For a sliver it lies close to the edge, which runs from e * low
-// to e * high.
+// The third vertex, relative to p, on the given side; for a sliver, close to the edge from e * low to e * high.
 GRAZE_INLINE Vec draw_third(auto& draws, const auto& grain, const Shape& shape, const Vec& side, const Vec& e,
                             double low, double high) {
   const Vec arm = toward(side, draw_arm(draws, grain));
@@ -119,7 +118,7 @@ GRAZE_INLINE Contact draw_contact(auto& draws, Touch touch, const auto& grain, c
     v = u * ratio + v * shape_a.height;
   }
   // u is along A's edge and v along B's edge, or both span A's face. If a vertex touches an edge, the separating
-  // direction may be any that is perpendicular to the edge. If two vertices touch, it may be any direction.
+  // direction may be any perpendicular to that edge; if two vertices touch, it may be any direction.
   const Vec away = normalised(touch == Touch::vertex_vertex ? v : cross(u, v));
   const Vec back = away * -1.0;
   if (touch == Touch::vertex_face) {
@@ -140,7 +139,8 @@ GRAZE_INLINE Contact draw_contact(auto& draws, Touch touch, const auto& grain, c
 }
 
 // Moves B away from the contact or into A. Half of the pushes are gaps of ±2^-1 … ±2^-40 of the triangles' size
-// (doubles: ±2^-100), applied before rounding. The others move one coordinate of b[0] by 0 … ±8 ulps after rounding.
+// (doubles: ±2^-100), applied before rounding. The other half move one coordinate of b[0] by 0 … ±8 ulps after
+// rounding.
 struct Push {
   double gap;
   int axis;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strata that exist only in doubles. They draw numbers like those in maps, drawings and constructions, and pairs
-// that float32 cannot store. strata/double_strata.inc lists them.
+// The strata that exist only in doubles (strata/double_strata.inc lists them). These strata draw numbers like those in
+// maps, drawings and constructions, and pairs that float32 cannot store.
 #pragma once
 
 #include "core/exact/exact.h"
@@ -137,8 +137,8 @@ GRAZE_HD inline DoublePair construction_born(DoubleDraws& draws) {
   return shuffled(draws, rounded(draws, draft));
 }
 
-// A near contact whose gap is about as large as the spacing of float32 numbers there. Draws up to 32 contacts and takes
-// the first whose verdict changes in float32, or else the last. Nearly always there is such a contact.
+// A near contact whose gap is about as large as the spacing of float32 numbers at the contact. Draws up to 32 contacts
+// and takes the first whose verdict changes in float32; if none does, which is rare, takes the last.
 GRAZE_HD inline DoublePair stored(DoubleDraws& draws) {
   DoublePair pair{};
 #ifndef __CUDA_ARCH__

@@ -25,7 +25,7 @@ using Vec = Vec3<double>;
 
 // The random words of one pair, in order: Philox4x32-10 with the seed as its key. The counter is the index (two words),
 // the stratum and the block number. The order of draws is part of a stratum's definition. C++ does not define the order
-// of evaluation within an expression, except in braces. So use one draw per expression, or braces.
+// of evaluation within an expression, except in braces, so use one draw per expression, or braces.
 struct Draws {
   philox4x32_key_t key;
   philox4x32_ctr_t counter;
@@ -46,7 +46,7 @@ struct Draws {
     return block.v[used++];
   }
 
-  // A whole number from 0 to n - 1. Its bias, n / 2^32, is negligible here.
+  // A whole number from 0 to n - 1, with a negligible bias of n / 2^32.
   GRAZE_INLINE std::uint32_t below(std::uint32_t n) {
     return static_cast<std::uint32_t>(static_cast<std::uint64_t>(word()) * n >> 32);
   }
@@ -81,8 +81,8 @@ struct Draws {
             static_cast<double>(integer(reach))};
   }
 
-  // Constants for the coordinate type. kBits is the number of significant bits. The others are exponents of two: of the
-  // smallest gap, the largest offset, the flattest sliver, the largest ratio of axes, and the range of scales.
+  // Constants for the coordinate type: kBits, the number of significant bits, and exponents of two: of the smallest
+  // gap, the largest offset, the flattest sliver, the largest ratio of axes, and the range of scales.
   using Real = float;
   using Integer = int;
   static constexpr int kBits = 24, kGap = 40, kOffset = 22, kSliver = 22, kRatio = 20, kLeastScale = -149,

@@ -25,7 +25,7 @@ namespace {
 
 using Triangle = std::array<Vec3<float>, 3>;
 
-// A limit on candidate pairs. Without it, a mesh whose triangles all overlap would fill the memory.
+// A limit on candidate pairs, without which a mesh whose triangles all overlap would fill the memory.
 constexpr std::size_t kMostCandidates = std::size_t{1} << 28;  // 2 GiB of indices
 
 std::string read_bytes(const std::filesystem::path& file) {
@@ -81,7 +81,7 @@ void add_rounding(MeshPairs& pairs, const Rounding& rounding, const std::filesys
   for (std::string& note : doubles_note(file.string(), rounding)) pairs.notes_of_doubles.push_back(std::move(note));
 }
 
-// How many fans fold over: a triangle's normal points against the sum of the fan's normals. Such a fan's face is not
+// How many fans fold over: some triangle's normal points against the sum of the fan's normals, so the face is not
 // convex. The test rounds to double, so it may miss a fold that is narrower than the rounding error.
 std::size_t folded_fans(const Soup& soup) {
   const auto normal = [&](const std::array<std::uint32_t, 3>& triangle) {
@@ -196,7 +196,7 @@ std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path
   return ends;
 }
 
-// Finds the candidate pairs: within the body if there is one, otherwise between bodies.
+// Finds the candidate pairs: within the body if there is only one, otherwise between bodies.
 void pair_up(MeshPairs& result, const std::vector<std::size_t>& ends, const std::filesystem::path& file) {
   const auto add = [&](const Box& p, const Box& q) {
     if (result.candidates.size() == kMostCandidates) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs from real input: triangles of one mesh, or of several, whose closed bounding boxes overlap. CGAL finds these
-// boxes with its hybrid of streaming and segment trees (Zomorodian and Edelsbrunner 2002).
+// Pairs from real input: triangles of one mesh, or of several, whose closed bounding boxes overlap. CGAL finds
+// overlapping boxes with its hybrid of streaming and segment trees (Zomorodian and Edelsbrunner 2002).
 #pragma once
 
 #include <array>
@@ -51,12 +51,12 @@ bool is_mesh(const std::filesystem::path& file);
 // "OFF, OBJ, STL or PLY"
 std::string mesh_formats();
 
-// The candidate pairs of bodies: one body against itself, or several against each other. Each file is a body. With
-// `poses`, each pose of a single mesh is a body instead. `poses` is a CSV file with twelve numbers per row: the three
-// rows of a pose's matrix (R | t).
+// The candidate pairs of bodies: one body against itself, or several against each other. Without `poses`, each file is
+// a body; with `poses`, each pose of a single mesh is a body. `poses` is a CSV file with twelve numbers per row: the
+// three rows of a pose's matrix (R | t).
 // A face with more than three vertices is cut into a fan from its first vertex. Each coordinate is rounded once to
 // float32; coordinates that change are counted. Triangles that become degenerate are kept. The boxes enclose the
-// rounded triangles, so no touching pair is missed. The extension determines the format.
+// rounded triangles, so no touching pair is missed. A file's extension determines its format.
 // Requires: at least one file, and exactly one if there are poses.
 // Throws: std::runtime_error with one line: the file, its line or byte, and what was expected and found.
 MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std::filesystem::path& poses = {});

@@ -17,7 +17,7 @@ namespace {
 // takes less than half the time that CGAL's default limit of 10 takes.
 constexpr std::ptrdiff_t kSwept = 1000;
 
-// How many other boxes CGAL gets per call. With long boxes, a call takes quadratic time and cannot be interrupted.
+// How many boxes a CGAL call pairs with a slab's. With long boxes, it takes quadratic time and cannot be interrupted.
 constexpr std::size_t kTogether = std::size_t{1} << 15;
 
 bool is_finite(const std::array<Vec3<float>, 3>& t) {

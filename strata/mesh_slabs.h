@@ -26,7 +26,7 @@ class BoxSlabs {
   ~BoxSlabs();
 
   std::size_t size() const;
-  // How many triangles of `a` lie in the slabs before this one. For slab size(): how many triangles of `a` are finite.
+  // How many triangles of `a` lie in the slabs before this one. If slab == size(), all finite triangles of `a` count.
   std::size_t triangles_before(std::size_t slab) const;
   std::uint64_t not_finite() const;  // how many triangles of both meshes are not finite
 

@@ -37,7 +37,7 @@ Pairs by_slabs(const BoxSlabs& slabs) {
   return pairs;
 }
 
-// Triangles on a coarse lattice, so that many boxes only touch. One in eight is long.
+// Triangles on a coarse lattice, so that many boxes only touch. One triangle in eight is long.
 Triangles drawn(std::size_t count, unsigned seed, int longest_axis) {
   std::mt19937 random(seed);
   Triangles triangles(count);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A triangle within a larger one, or just outside it. Both are drawn on a chart whose grid gives the larger triangle's
-// barycentric coordinates. So with integers, containment and contact are exact at every ratio of sizes. In some pairs,
-// the smaller triangle's vertices are then moved to both sides of the larger one's plane, so that it can pierce it.
+// A triangle within a larger one, or just outside it. Both triangles are drawn on a chart whose grid gives the larger
+// triangle's barycentric coordinates. So for integers, containment and contact are exact at every ratio of sizes. In
+// some pairs, the smaller triangle's vertices are then moved to both sides of the larger one's plane.
 #pragma once
 
 #include "strata/coplanar.h"
@@ -9,8 +9,8 @@
 namespace graze::strata {
 inline namespace GRAZE_FP {
 
-// A triangle within the triangle (0, 0), (size, 0), (0, size). If `turned`, it is within the triangle (size, size),
-// (0, size), (size, 0) instead. Each vertex is within size / 4 of its own corner, so the three are never collinear.
+// A triangle within the triangle (0, 0), (size, 0), (0, size) or, if `turned`, within the triangle (size, size),
+// (0, size), (size, 0). Each vertex is within size / 4 of its own corner, so the three are never collinear.
 GRAZE_HD inline void put_inner(auto& draws, int size, bool turned, GridPoint (&inner)[3]) {
   const int inset = draws.coin() ? size / 4 : size >> draws.between(2, 20);
   for (int m = 0; m < 3; ++m) {
@@ -24,7 +24,7 @@ GRAZE_HD inline void put_inner(auto& draws, int size, bool turned, GridPoint (&i
 
 // A is (0, 0), (reach, 0), (0, reach), where reach is 2^bits. B has about the given size. In three pairs out of four, B
 // lies within A; in the others it lies beyond A's edge i = 0. In at least a third of the pairs, B has a vertex or an
-// edge on that edge.
+// edge on A's edge i = 0.
 // Requires: 1 <= size <= reach.   Returns: points with |i| + |j| <= 2 * reach.
 GRAZE_HD inline GridPair draw_nested_grid_pair(auto& draws, int bits, int size) {
   const int reach = 1 << bits;

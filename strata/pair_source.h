@@ -68,7 +68,7 @@ Axis axis_of(std::string_view source);
 std::vector<std::string> source_patterns(const std::vector<std::string>& globs, const std::vector<std::string>& ids,
                                          const std::string& more = "");
 
-// The strata whose names match; all strata for an empty list. They share `pairs` evenly; the first ones get the
+// The strata whose names match; all strata for an empty list. The strata share `pairs` evenly; the first ones get the
 // remainder. Throws: the errors of source_patterns.
 std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs,
                                         PairTypes types = PairTypes::f32);

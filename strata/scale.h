@@ -60,8 +60,8 @@ GRAZE_HD inline auto mixed_scale(auto& draws) {
   move(draft.b, to_origin);
   scale(shrink_a ? draft.a : draft.b, {size, size, size});
   move(draft.b, contact.away * (push.gap * size));
-  // If the contact is at the origin, the small triangle keeps its digits. Elsewhere its coordinates are rounded to the
-  // spacing of the large triangle's coordinates.
+  // If the contact is at the origin, the small triangle keeps its digits; at other places, its coordinates are rounded
+  // to the spacing of the large triangle's coordinates.
   if (draws.below(4) == 0) {
     move(draft.a, contact.p);
     move(draft.b, contact.p);

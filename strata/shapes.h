@@ -20,7 +20,7 @@ GRAZE_HD inline auto sliver(auto& draws) {
   return near_contact(draws, touch, which != 1 ? shape : Shape{}, which != 0 ? shape : Shape{});
 }
 
-// A segment along e that contains p or starts at p. The third vertex is one of its ends, or lies exactly on its line.
+// A segment along e that contains p or starts at p. The third vertex is an end of the segment, or exactly on its line.
 GRAZE_HD inline void put_segment(auto& draws, const auto& grain, const Vec& p, const Vec& e, Vec (&triangle)[3]) {
   const double back = draws.coin() ? draw_weight(draws, grain) : 0;
   const double forth = draw_weight(draws, grain);
@@ -32,9 +32,9 @@ GRAZE_HD inline void put_segment(auto& draws, const auto& grain, const Vec& p, c
 
 GRAZE_HD inline void put_point(const Vec& p, Vec (&triangle)[3]) { triangle[0] = triangle[1] = triangle[2] = p; }
 
-// B is a segment or a point; A may also be a proper triangle. Both contain a point p; in half of the pairs, B is then
-// moved by one unit. Coordinates are integers, small or wide, so a segment's vertices are exactly collinear. Then the
-// pair is scaled by a power of two.
+// B is a segment or a point; A may also be a proper triangle. Both A and B contain a point p; in half of the pairs, B
+// is then moved by one unit. Coordinates are integers, small or wide, so a segment's vertices are exactly collinear. At
+// the end, the pair is scaled by a power of two.
 GRAZE_HD inline auto degenerate(auto& draws) {
   const auto grain = draws.coin() ? small_grain(draws) : wide_grain(draws);
   const Vec p = draw_place(draws, grain);
@@ -95,8 +95,8 @@ GRAZE_HD inline Fold draw_fold(auto& draws) {
   return fold;
 }
 
-// A point near p in A's plane, lifted by ±fold.lift. If it is on the far side of the common edge, the triangles lie
-// side by side; on A's side, they are folded onto each other.
+// A point near p in A's plane, lifted by ±fold.lift. If the point is on the far side of the common edge, the triangles
+// lie side by side; on A's side, they are folded onto each other.
 GRAZE_HD inline Vec draw_free_vertex(auto& draws, const Fold& fold) {
   const double i = fold.exact ? draws.integer(8) : draws.real();
   const double j = fold.exact ? draws.integer(8) : draws.real();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strata: named generators of pairs. Each is a pure function of (seed, stratum, index) with the same bits on host and
+// Strata: named generators of pairs, each a pure function of (seed, stratum, index) with the same bits on host and
 // device. Random bits come from Random123's Philox4x32-10 (Salmon et al. 2011); the integer-to-float maps are ours.
 #pragma once
 
@@ -28,7 +28,7 @@ enum class Group : std::uint8_t { general, coplanar, degenerate, extreme, mesh }
 // points lie in one plane. general: any other pair.
 enum class Kind : std::uint8_t { general, shared_vertex, shared_edge, coplanar, degenerate };
 
-// A row of strata/strata.inc or strata/double_strata.inc. The former explains the columns.
+// A row of strata/strata.inc, which explains the columns, or of strata/double_strata.inc.
 struct StratumInfo {
   Stratum stratum;
   std::string_view id;
@@ -71,7 +71,7 @@ constexpr bool is_drawn_on_devices(Stratum stratum) { return stratum != Stratum:
 
 inline namespace GRAZE_FP {
 
-// The pair with this index. All its coordinates are finite.
+// The pair with this index, with finite coordinates.
 // Requires: a stratum of kStrata; compiled without contraction, on both host and device.
 GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, std::uint64_t index);
 

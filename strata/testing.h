@@ -99,7 +99,7 @@ int shared_vertices(const BasicPair<Real>& pair) {
   return shared;
 }
 
-// Whether the closed boxes of two triangles overlap. They never do if a box has a NaN.
+// Whether the closed boxes of two triangles overlap; false if a box has a NaN.
 inline bool boxes_overlap(const Triangle<float>& a, const Triangle<float>& b) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto ends = [&](const Triangle<float>& t) {

@@ -13,7 +13,7 @@
 
 namespace graze::fuzz {
 
-// For each signature, this many cases are kept: those with the smallest keys, in whatever order they are found.
+// For each signature, this many cases are kept: those with the smallest keys, regardless of the order of discovery.
 inline constexpr std::size_t kKeptCases = 4;
 
 // Identifies a pair: its source in the campaign, and its index in that source.
@@ -35,8 +35,8 @@ struct SignatureCount {
 };
 
 // A digest of each lane's verdicts on some pairs. Two runs on the same pairs with equal digests have the same verdicts.
-// A digest is a sum of hashes, one for each pair whose verdict is not the truth, so parts can be added in any order.
-// Different verdicts have equal sums with probability 2^-64.
+// A digest is a sum of hashes, one for each pair whose verdict is not the truth, so parts can be added in any order. If
+// a verdict differs, the digests are still equal with probability 2^-64.
 struct VerdictDigests {
   std::vector<std::uint64_t> of_lane;
   std::uint64_t pairs = 0;  // pairs that the digests cover; excludes pairs judged by a GPU engine

@@ -27,14 +27,14 @@ namespace graze::fuzz {
 namespace {
 
 constexpr std::uint64_t kBatchPairs = 65536;  // pairs per transaction of the CPU engine
-// Batch limit for pairs that the cores draw for a device. It also applies to doubles, because a device leaves many
-// pairs of doubles to the cores.
+// Batch limit for pairs that the cores draw for a device. The same limit applies to doubles, because a device leaves
+// many pairs of doubles to the cores.
 constexpr std::uint64_t kOfCores = std::uint64_t{1} << 25;
 
-// Chooses the next batch. It comes from the source with the fewest pairs done, so that an interrupted campaign has
-// covered all sources. A large source of unknown cost first gets a small batch, to estimate the remaining time early.
-// If earlier runs already judged some of its pairs, the small batch waits until this process has done a whole batch.
-// Otherwise a campaign that is interrupted again and again would never end.
+// Chooses the next batch from the source with the fewest pairs done, so that an interrupted campaign has covered all
+// sources. A large source of unknown cost first gets a small batch, to estimate the remaining time early. If an earlier
+// run judged some of this source's pairs, the small batch waits until this process has done a whole batch; otherwise a
+// campaign that is interrupted again and again would never end.
 std::optional<PairRange> next_batch(const Campaign& campaign, const Store& store,
                                     const std::vector<std::uint64_t>& done, const CostEstimate& costs,
                                     std::uint64_t done_here, int threads) {

@@ -216,7 +216,7 @@ TEST_F(CampaignTest, RefusesADirectoryOfAnotherCampaign) {
   const std::string before = read_whole(root_ / "taken" / "summary.json");
   EXPECT_THROW(run(campaign("taken", 1, 5000)), UsageError);
   EXPECT_EQ(read_whole(root_ / "taken" / "summary.json"), before);
-  // Another build cannot resume it: commit, build type and flags must be the same.
+  // Another build cannot resume a campaign: commit, build type and flags must be the same.
   for (const char* key : {"commit", "type", "flags"}) {
     Campaign other = campaign("taken", 1, 4000);
     EXPECT_FALSE(other.build[key].get<std::string>().empty()) << key;

@@ -99,7 +99,7 @@ class CampaignFiles : public testing::Test {
   std::filesystem::path root_;
 };
 
-// Makes `copies` adjacent copies of each lane under test, so that there are more lanes than a subject has. The policy
+// Makes `copies` adjacent copies of each lane under test, so that each subject has unusually many lanes. The policy
 // names of the copies have no effect.
 class ManyLanes {
  public:

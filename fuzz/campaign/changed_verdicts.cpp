@@ -11,7 +11,7 @@ namespace {
 std::uint64_t gap(std::uint64_t l, std::uint64_t r) { return l < r ? r - l : l - r; }
 
 // Each changed verdict moves its pair from one count to another, or between a count and the right verdicts. A pair that
-// a convention excuses may move without a changed verdict, so the lower bound excludes such pairs.
+// a convention excuses may move although its verdict is unchanged, so the lower bound excludes such pairs.
 void add_bounds(const Counts& before, const Counts& after, std::uint64_t pairs, ChangedVerdicts& to) {
   const auto not_right = [](const Counts& counts) { return counts.not_right() + counts.by_convention; };
   std::uint64_t moved = gap(not_right(before), not_right(after));

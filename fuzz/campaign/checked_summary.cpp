@@ -221,7 +221,7 @@ DatabaseCounts counts_of_database(const fs::path& directory) {
   DatabaseCounts found{recorded_store(directory), {}};
   StoreSpec& store = found.store;
   for (const std::string id : store.spec.at("strata")) {
-    // Only the mesh itself tells how many pairs it has. So this checks only that no source has more pairs than the
+    // How many pairs a mesh has is known only from the mesh, so this checks only that no source has more pairs than the
     // campaign.
     strata::PairSource source{id, store.spec.at("pairs"), nullptr};
     if (!store.spec.contains("scene")) source.axis = strata::axis_of(id);

@@ -8,10 +8,10 @@
 
 namespace graze::fuzz {
 
-// Returns the summary.json in a campaign's directory. It must agree with the database; without a database, its counts
-// must be possible.
-// Throws: std::runtime_error, in one line, if it is missing, contradicts the database or is impossible; FormatError if
-// its keys or types are wrong; and the errors of recorded_store.
+// Returns the summary.json in a campaign's directory, which must agree with the database; without a database, its
+// counts must be possible.
+// Throws: std::runtime_error, in one line, if the summary is missing, contradicts the database or is impossible;
+// FormatError if keys or types are wrong; and the errors of recorded_store.
 Json checked_summary(const std::filesystem::path& directory);
 
 // Returns: the campaign's recorded "spec", from its database, or from its summary if there is no database; null if

@@ -71,7 +71,7 @@ struct PairsToJudge {
   }
 };
 
-// Judges one block of pairs. Runs host lanes and twins, and computes the truth. A device has run its lanes already.
+// Judges one block of pairs. Runs host lanes and twins, and computes the truth. Device lanes have already run.
 class BlockJudge {
  public:
   // exact: if not null, decides instead of CGAL and GMP.
@@ -176,7 +176,7 @@ class BlockJudge {
       changed_by_storing_[w] = (changed_by_storing_[w] ^ truth_[w]) | none_[w];
   }
 
-  // Finds the margin buckets of pairs of doubles where the margin in float32 determines them; the others remain open.
+  // Finds the margin bucket of each pair of doubles whose margin in float32 determines it; the others remain open.
   void find_wide_margins(std::span<const Pair> stored) {
     std::vector<Pair> unchanged;
     std::vector<std::size_t> places;

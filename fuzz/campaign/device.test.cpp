@@ -48,7 +48,7 @@ class DeviceTest : public CampaignFiles {
     return c;
   }
 
-  // The same kind of campaign on all strata of doubles, or of both types.
+  // Like `campaign`, but on all strata of doubles, or of both types.
   Campaign campaign_of_doubles(const SelectedLanes& under_test, const std::string& name, std::uint64_t pairs,
                                std::size_t engines = 0, PairTypes types = PairTypes::f64) const {
     Campaign c = campaign(under_test, name, 0, engines);

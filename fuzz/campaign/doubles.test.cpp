@@ -28,7 +28,7 @@ class CampaignOfDoubles : public CampaignFiles {
   SelectedLanes lanes_ = select_lanes({}, Executor::twin);
 };
 
-// The summary's margins are the same as GMP's, although the margins in float32 determine most large ones.
+// The summary's margins are the same as GMP's, although most large ones are found from the pairs rounded to float32.
 TEST_F(CampaignOfDoubles, MarginsAreTheOracles) {
   const Campaign c = campaign("margins", 28 * 200);
   const Json strata = run(c)["strata"];
@@ -167,8 +167,8 @@ TEST_F(CampaignOfDoubles, RecordsAreReadBackAndChecked) {
   text[at] = text[at] == '4' ? '5' : '4';
   write_whole(file, text);
   EXPECT_THROW(read_cases(directory, summary["spec"], summary["signatures"][0]), corpus::FormatError);
-  // A summary is rejected if an exact lane has errors that rounding to float32 does not cause, or if more errors are
-  // due to this rounding than there are.
+  // A summary is rejected if an exact lane has errors that rounding to float32 does not cause, or if it counts more
+  // errors from this rounding than errors in all.
   std::filesystem::remove(directory / kDatabase);
   EXPECT_EQ(checked_summary(directory), summary);  // even without a database
   for (const char* lane : {"exact/f32/cpu", "exact/f64/cpu"}) {

@@ -82,7 +82,7 @@ void expect_possible_costs(const Json& costs, const std::vector<std::string>& la
 void expect_possible_run(const Json& run, const std::vector<std::string>& lanes,
                          const std::map<std::string, std::uint64_t>& sources, std::uint64_t pairs) {
   if (run.contains("pairs")) {
-    // After damage, parts of a merged campaign may have judged some pairs twice.
+    // If a database was damaged, the parts of a merged campaign may have judged some pairs twice.
     const Json& judged = run["pairs"];
     if (!judged.is_number_integer() || judged < 0 || (judged > pairs && !run.contains("merged")))
       throw std::runtime_error(

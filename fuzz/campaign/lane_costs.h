@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lane's cost on the campaign's own pairs, in nanoseconds per pair on one core. It is stored in timings.json, because
-// it depends on the machine and its load.
+// A lane's cost on the campaign's own pairs, in nanoseconds per pair on one core. Costs depend on the machine and its
+// load, so they are stored in timings.json.
 #pragma once
 
 #include <map>
@@ -13,8 +13,8 @@ inline constexpr std::uint64_t kPairsTimed = 1024;  // the first pairs of each s
 inline constexpr int kPassesTimed = 9;
 
 // Times the host lanes. Device lanes and their twins are not timed, and neither is foreign code, because its time would
-// include its processes. In each of the kPassesTimed passes, the lanes run one after another, each over all pairs. So
-// other load on the machine affects all lanes alike, and no lane benefits from a trained branch predictor.
+// include its processes. In each of the kPassesTimed passes, the lanes run one after another, each over all pairs.
+// Thus, other load on the machine affects all lanes alike, and no lane benefits from a trained branch predictor.
 // Returns: {"passes", "lanes": {lane: {source: {"pairs", "low", "middle", "high"}}}}, with the quartiles of the passes.
 Json measure_costs(const Campaign& campaign);
 

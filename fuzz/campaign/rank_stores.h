@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stores DIR/rank-R in a campaign's directory. Each rank keeps one until its rows are in the campaign's own store.
+// The stores DIR/rank-R in a campaign's directory. A rank keeps its store until the rows are in the campaign's store.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@ namespace graze::fuzz {
 
 std::filesystem::path rank_directory(const std::filesystem::path& campaign, int rank);
 
-// All rank directories, sorted by name. Each holds a store or is empty. Folders with other files are ignored.
+// All rank directories, sorted by name. Rank directories are empty or hold a store; other folders are ignored.
 std::vector<std::filesystem::path> rank_directories(const std::filesystem::path& campaign);
 
 // Commits the rows that a killed run left in rank stores, then removes these stores.

@@ -72,7 +72,7 @@ bool is_of_mesh(std::string_view source) { return strata::stratum_in_doubles(sou
 
 namespace {
 
-// The mesh's number of pairs, from the summary if it is there, otherwise from the mesh itself.
+// The mesh's number of pairs, from the summary if it has one, otherwise from the mesh itself.
 std::uint64_t mesh_pairs(const Json& spec, const Json& summary) {
   std::uint64_t found = 0;
   const Json strata = summary.value("strata", Json::object());

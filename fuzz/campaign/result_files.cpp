@@ -208,7 +208,7 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
     const char* const turn = e % 2 == 0 ? "minimised" : "worst";
     const bool in_order = result ? kept == 0 && corpus::text_of(entry, "kind") == turn : kept > 0 || e % 2 == 0;
     if (!in_order)
-      throw refuse(fmt::format("line {} is out of order: minimised and worst pairs, then the cases", entry.line));
+      throw refuse(fmt::format("line {} is out of order: the minimised and worst pairs come first", entry.line));
     const std::optional<analysis::Signature> own = analysis::parse_signature(corpus::text_of(entry, "signature"));
     kept += !result;
     if (!own || own->subject != recorded->subject || (!result && *own != *recorded))

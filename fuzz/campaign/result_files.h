@@ -15,8 +15,8 @@ namespace graze::fuzz {
 // The truth as fields of a case: truth, contact, margin, margin_ulps.
 std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Truth& truth);
 
-// Whether the lane's differences from a cpu lane are counted. They are if `lanes` holds the cpu lane of its algorithm
-// and scalar, and the lane is not itself that cpu lane.
+// Whether the lane's differences from a cpu lane are counted: if the lane is not itself a cpu lane, and `lanes` holds
+// the cpu lane of the same algorithm, scalar and policy.
 bool is_compared_with_cpu(const std::string& lane, const std::vector<std::string>& lanes);
 
 // Writes summary.json and cases/ from the store. If the cases in a file have not changed, the file keeps the
@@ -54,11 +54,12 @@ bool is_minimised_from(const std::string& text, const std::string& fresh);
 // The error for a case file that fails a check.   found: the defect, such as "it is missing or empty".
 corpus::FormatError wrong_cases(const std::filesystem::path& directory, const Json& row, const std::string& found);
 
-// Whether results may be written to the folder (see may_fill). It must be empty, or hold a campaign or shard from
+// Whether results may be written to the folder (see may_fill). The folder must be empty, or hold a campaign or shard of
 // `graze fuzz`, `hunt` or `merge`.
 bool may_hold_campaign(const std::filesystem::path& folder);
 
-// Returns the runs in timings.json, each an object; none if there is no file.   Throws: FormatError if it is damaged.
+// Returns the runs in timings.json, each an object; none without this file.   Throws: FormatError if the file is
+// damaged.
 Json read_timings(const std::filesystem::path& directory);
 
 // Called before a run, so that damaged records cannot make it fail at its end: timings.json must be readable, and a

@@ -29,7 +29,7 @@ std::int64_t now() {
   return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-// The distinct hashes of the signatures without their margins.
+// The distinct hashes of the signatures, ignoring margins.
 std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signatures) {
   std::set<std::string> ways;
   for (const auto& [key, count] : signatures) {
@@ -104,7 +104,7 @@ void RunStatus::tell(const Progress& progress, const std::map<std::string, Signa
   status_["pairs"] = progress.total;
   status_["done"] = progress.done;
   status_["rate"] = progress.seconds > 0 ? static_cast<double>(progress.done_here) / progress.seconds : 0;
-  // After the last pair, the run measures costs and writes its results. The estimate does not include that time.
+  // The estimate does not include the time after the last pair, when the run measures costs and writes its results.
   status_["seconds_left"] =
       progress.seconds_left && progress.done < progress.total ? Json(*progress.seconds_left) : Json();
   status_["disagreements"] = progress.all_disagreements;

@@ -40,7 +40,7 @@ void seal(const std::filesystem::path& directory);
 
 // Removes a status that is damaged or has impossible counts. In a campaign's folder, a file named status.json belongs
 // to Graze.
-// Throws: std::runtime_error if it is not a regular file; UsageError if it is a link.
+// Throws: std::runtime_error if status.json is not a regular file; UsageError if it is a link.
 void remove_damaged_status(const std::filesystem::path& directory);
 
 // Returns the directory's status; null if there is none.

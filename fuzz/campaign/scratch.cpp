@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // In /tmp another user could guess the folder's name and create it first.
-// Throws: std::runtime_error if it is a link, or belongs to another user.
+// Throws: std::runtime_error if the folder is a link, or belongs to another user.
 void expect_own_folder(const fs::path& folder) {
   struct stat there {};
   if (lstat(folder.c_str(), &there) != 0) throw std::runtime_error(cannot("use", folder, errno));

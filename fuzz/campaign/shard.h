@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A shard: the K-th of N parts of a campaign. It takes the K-th part of every source's indices. Together the N parts
-// cover each index exactly once. Each part can run on any machine.
+// A shard: the K-th of N parts of a campaign, which can run on any machine. Shard K/N has the K-th part of every
+// source's indices. Together the N shards cover each index exactly once.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct Shard {
 // Parses "3/16".   Returns: nothing if the text is not a shard, or N exceeds kMostShards.
 std::optional<Shard> parse_shard(std::string_view text);
 
-// The shard's range of indices in a source with this many pairs. It may be empty if there are fewer pairs than shards.
+// The shard's range of indices in a source with this many pairs; possibly empty if there are fewer pairs than shards.
 PairRange share_of(const Shard& shard, int source, std::uint64_t pairs);
 
 }  // namespace graze::fuzz

@@ -26,7 +26,7 @@ class SignatureCounts {
   void move_to(std::map<analysis::Signature, SignatureCount>& signatures);
 
  private:
-  // The first part of a key. The lanes' verdicts follow it, one byte each.
+  // The first part of a key; the second part is the lanes' verdicts, one byte each.
   struct Head {
     std::uint16_t relation;  // truth and nesting, packed
     std::uint16_t first;     // index of the subject's first lane

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edits a campaign's store at random. Opening it must succeed, or fail with one line that names the file. After
+// Edits a campaign's store at random. Opening the store must succeed, or fail with one line that names the file; with
 // --discard-damaged it must succeed. With the missing batches added, the results must equal the whole store's.
 #include "fuzz/campaign/store.h"
 

@@ -54,7 +54,7 @@ int last_errno(const SQLite::Database& database) {
   return error;
 }
 
-// Calls body() and turns its errors into one line that names the file.   database: the source of the system's reason.
+// Calls body() and turns its errors into one line that names the file.   database: gives the system's reason.
 template <class Body>
 auto in_one_line(const fs::path& file, const Body& body, const std::optional<SQLite::Database>& database = {}) {
   constexpr const char* kGoOn =
@@ -100,8 +100,8 @@ void expect_our_tables(SQLite::Database& database) {
   if (count != std::size(kTables)) throw Damaged("one of its tables is missing");
 }
 
-// Whether the database is empty.   Throws: std::runtime_error if it belongs to another program or has another format;
-// Damaged if it has other tables.
+// Whether the database is empty.   Throws: std::runtime_error if the database has another format or is another
+// program's; Damaged if it has other tables.
 bool is_fresh(SQLite::Database& database, const fs::path& file) {
   const std::int64_t application = number(database, "PRAGMA application_id");
   if (application == 0 && number(database, "SELECT count(*) FROM sqlite_schema") == 0) return true;
@@ -245,7 +245,7 @@ std::int64_t insert(SQLite::Database& database, std::uint64_t campaign, const Pa
   return database.getLastInsertRowid();
 }
 
-// Whether the database is unchanged since a run ended and sealed it. If so, no log belongs to it.
+// Whether the database is unchanged since a run ended and sealed it; then any log beside it is another database's.
 bool is_closed(const fs::path& database) {
   try {
     const Json status = read_status(database.parent_path());
@@ -255,8 +255,8 @@ bool is_closed(const fs::path& database) {
   }
 }
 
-// The files beside the database that SQLite would read although it did not write them for this database. They are
-// damaged, are links, or belong to other programs or databases.
+// The files beside the database that SQLite would read although it did not write them for this database: damaged files,
+// links, and files of other programs or databases.
 // Throws: std::runtime_error for a pipe or a device.
 std::vector<fs::path> unusable_files_of(const fs::path& database) {
   constexpr std::string_view kJournal = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", kLog = "\x37\x7f\x06",
@@ -277,7 +277,7 @@ std::vector<fs::path> unusable_files_of(const fs::path& database) {
   return found;
 }
 
-// Throws: DamagedStore if there are any such files.
+// Throws: DamagedStore if unusable_files_of finds a file.
 void expect_usable_files_of(const fs::path& database) {
   for (const fs::path& file : unusable_files_of(database))
     throw DamagedStore(
@@ -402,7 +402,7 @@ Salvage salvage(const StoreSpec& spec) {
 
 }  // namespace
 
-// Like in_one_line, but takes the system's reason from the database.
+// Like in_one_line, with this store's file and database.
 template <class Body>
 auto StoreFile::checked(const Body& body) {
   return in_one_line(file_, body, database_);

@@ -37,7 +37,7 @@ struct DamagedStore : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Thrown if the database that a run opened was moved, removed or replaced. The folder may then belong to another run.
+// Thrown if the database that a run opened was moved, removed or replaced. Another run may use the folder now.
 struct MovedStore : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -45,8 +45,8 @@ struct MovedStore : std::runtime_error {
 class StoreFile {
  public:
   // Opens or creates the database in the spec's directory.
-  // Throws: UsageError if it holds another campaign. All members, including this one, throw std::runtime_error, in one
-  // line that names the file, for a database that is damaged or not Graze's.
+  // Throws: UsageError if the database holds another campaign. All members, including this one, throw
+  // std::runtime_error, in one line that names the file, for a database that is damaged or not Graze's.
   explicit StoreFile(const StoreSpec& spec);
 
   // Calls visit for every row, after checking the row's checksum, that its range is within the source, and that it
@@ -58,7 +58,7 @@ class StoreFile {
   // Shrinks the file after rows were removed.
   void shrink();
 
-  // Writes the log back, so that the store is a single file. Closing does that too, but cannot report a failure.
+  // Writes the log back, so that the store is a single file. The destructor does so too, but cannot report a failure.
   void finish();
 
   // Throws: MovedStore.

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 // [[bucket, pairs, intersects, [[lane, false positive, false negative, declined, differs from cpu], …]], …]. If any of
 // the four counts `crashed`, `timed out`, `unstable` and `by convention` is not 0, all four follow. If rounding doubles
-// to float32 caused errors, these four counts and then the number of these errors follow.
+// to float32 caused errors, the four counts follow, and then the number of such errors.
 Json to_json(const analysis::Tally& tally) {
   Json rows = Json::array();
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {

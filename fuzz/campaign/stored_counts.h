@@ -39,8 +39,8 @@ inline StoredCounts from_bytes(const std::string& bytes, const PairRange& range,
   return from_bytes(bytes, range, range.pairs, axis, lanes);
 }
 
-// The checksum of the range and its stored bytes. campaign: the checksum of the campaign's identity. Any single change
-// alters the result.
+// A checksum of the range and its stored bytes, which any single change alters. campaign: the checksum of the
+// campaign's identity.
 std::uint64_t checksum(std::uint64_t campaign, const PairRange& range, const std::string& bytes);
 
 }  // namespace graze::fuzz

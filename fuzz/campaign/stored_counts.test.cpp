@@ -16,8 +16,8 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kKey = "none/22/skew/+2^3/moller_1997:+f32/cpu";
 const PairRange kRange{1, 100, 10};
 
-// Ten pairs. Bucket 5 has six of them, and two of these intersect. Lane 0 is wrong on three pairs. Lane 1, which is
-// foreign code, is wrong on two.
+// Ten pairs: six are in bucket 5, and two of these six intersect. Lane 0 is wrong on three pairs; lane 1, which is
+// foreign code, is wrong on two pairs.
 Json good() {
   return {{{-4, 4, 1, Json::array()}, {5, 6, 2, {{0, 2, 1, 0, 3}, {1, 0, 0, 0, 0, 1, 0, 1, 1}}}},
           Json::array(),

@@ -138,7 +138,7 @@ class Hunter {
     }
   }
 
-  // Runs the rounds that are not done yet, at most `threads_` at once.   Returns: whether all of them are done.
+  // Runs the rounds that are not done yet, at most `threads_` at once.   Returns: whether all rounds are done.
   bool play(const std::vector<Wanted>& rounds) {
     Processes processes;
     for (const Wanted& round : rounds) {

@@ -24,7 +24,7 @@ struct HuntRounds {
   Json told() const;
 };
 
-// The only source of a hunt's campaign. It has only the pairs of kept cases, which are in the rounds.
+// The only source of a hunt's campaign. This source has only the kept cases' pairs, which are in the rounds.
 strata::PairSource source_of_hunt(std::uint64_t pairs, bool in_doubles, std::shared_ptr<const HuntRounds> rounds);
 
 std::filesystem::path rounds_folder(const std::filesystem::path& hunt);

@@ -23,7 +23,7 @@ void store(Vec3<Real>& vertex, const Vec& v) {
   vertex = {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
 }
 
-// The two triangles in either order; only `own` may change.
+// A pair's two triangles, in either order; only the triangle `own` may change.
 template <class Real>
 struct Sides {
   Vec3<Real>* own;

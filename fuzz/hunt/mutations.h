@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Geometric changes to a pair. Guided search tries them on the pairs that it keeps.
+// Geometric changes to a pair, which the guided search tries on the pairs that it keeps.
 #pragma once
 
 #include <array>

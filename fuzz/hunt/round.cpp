@@ -37,8 +37,8 @@ constexpr std::uint32_t kMutations = 0x301;  // takes the place of a stratum's n
 // Ends this process without running exit handlers, because it is a copy of a process that continues.
 [[noreturn]] void leave(int status) { _exit(status); }
 
-// Closes all descriptors except the standard streams and those of foreign code and the programs that run it. An open
-// descriptor would keep the folder locked after the parent process has ended.
+// Closes all descriptors except the standard streams and the files of foreign code and of the programs that run foreign
+// code. An open descriptor would keep the folder locked after the parent process has ended.
 void close_all_but_code(const SelectedLanes& under_test) {
   std::vector<int> kept(program_files().begin(), program_files().end());
   for (const Lane* lane : under_test.lanes) {

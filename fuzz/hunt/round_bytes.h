@@ -26,7 +26,7 @@ struct NewKind {
   Mutation mutation = Mutation::fresh;
 };
 
-// The part of a round that is kept in a file. Its counts are in the campaign's store.
+// The part of a round that is kept in a file; the round's counts are in the campaign's store.
 struct KeptRound {
   std::uint64_t first = 0, pairs = 0;
   std::vector<Unit> units;                  // pairs that were still new when rounds were combined

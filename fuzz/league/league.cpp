@@ -198,7 +198,7 @@ League run_league(const SelectedLanes& under_test, std::vector<strata::PairSourc
   League league;
   league.seed = seed;
   bool stopped = false;
-  // Counts these pairs. The first has the index `begin` in a source of `of_source` pairs.
+  // Counts these pairs of a source of `of_source` pairs. begin: the first pair's index in the source.
   const auto count = [&](const auto& pairs, std::uint64_t begin, std::uint64_t of_source, std::size_t group) {
     const std::vector<Relation> truths = truths_of(pairs);
     tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t l) {

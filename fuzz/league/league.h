@@ -20,7 +20,7 @@
 
 namespace graze::fuzz {
 
-// Groups of strata. They are those of strata/groups.h, except that near and exact contacts have their own group.
+// The groups of strata/groups.h, except that near and exact contacts have their own group.
 enum class LeagueGroup : std::uint8_t { general, near, coplanar, degenerate, extreme };
 inline constexpr std::string_view kLeagueGroups[] = {"general", "near", "coplanar", "degenerate", "extreme"};
 inline constexpr std::size_t kLeagueGroupCount = std::size(kLeagueGroups);
@@ -75,7 +75,7 @@ struct League {
 // Throws: the errors of select_lanes.
 SelectedLanes league_lanes(const std::vector<std::string>& globs);
 
-// Limits for slow subjects, by name. Such a subject gets at most this many pairs: the first of each stratum.
+// Limits for slow subjects, by name: the subject gets only this many pairs, the first ones of each stratum.
 using MostPairs = std::map<std::string, std::uint64_t, std::less<>>;
 
 // Runs the league on pairs of one coordinate type. The result does not depend on the number of threads. `stop` is
@@ -87,7 +87,7 @@ League run_league(
     const std::function<bool(std::uint64_t done)>& stop = [](std::uint64_t) { return false; });
 
 // Each row's nanoseconds per pair on the first pairs of `uniform`: the median over repetitions, in which the rows run
-// in turn. For foreign code it is the time in its own process, without communication. Command subjects have no time.
+// in turn. For foreign code: the time in the code's process, without communication. Command subjects have no time.
 inline constexpr std::size_t kLeagueTimedPairs = 1024;
 inline constexpr int kLeagueRepetitions = 15;
 std::vector<std::optional<double>> league_costs(const League& league);

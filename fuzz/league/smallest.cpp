@@ -57,7 +57,7 @@ LeagueFailure minimised(const Candidate& candidate) {
   return result;
 }
 
-// Whether the lane fails on this pair with the same shape and verdict as on the failure's pair, within its contract.
+// Whether this pair is within the lane's contract, and the lane fails on it with the failure's shape and verdict.
 bool fails_so(const LeagueFailure& failure, const AnyPair& pair) {
   const Verdict verdict = visit(pair, [&](const auto& own) { return decide_one(failure.lane->decide, own); });
   const oracle::Truth truth = oracle::truth(pair);

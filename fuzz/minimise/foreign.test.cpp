@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests the minimiser on foreign code. The causes of its failures are found with experiments.
+// Tests the minimiser on foreign code, whose causes of failure are found with experiments.
 #include <gtest/gtest.h>
 
 #include "analysis/experiments.h"
@@ -14,7 +14,7 @@ Verdict opposite_of_truth(const Pair& pair) {
   return relation_of(pair).verdict == Verdict::disjoint ? Verdict::intersects : Verdict::disjoint;
 }
 
-// Experiments are expensive. A search that ends at once must make only one.
+// Experiments are expensive, so a search that ends at once must make only one experiment.
 TEST(MinimiseForeignCode, FindsTheFirstCauseOnce) {
   static analysis::Stranger code(opposite_of_truth);
   static const AlgorithmInfo info{"always_wrong", "test", "", "", "", false};

@@ -159,8 +159,8 @@ Json worst_pair(const SelectedLanes& under_test, const Kind& kind, const std::ve
                    [](const Candidate& l, const Candidate& r) { return l.ulps > r.ulps; });
   candidates.resize(std::min(candidates.size(), kMostLookedAt));
   candidates.push_back({&simplest, &simplest.shown(), ulps_of(simplest.shown())});
-  // The last candidate is the simplest pair, which is known to belong to the kind. It is not examined again, because
-  // code with changing verdicts could give another result.
+  // The last candidate, the simplest pair, is known to belong to the kind. It is not examined again, because code whose
+  // verdicts change between calls could give another result.
   const auto worst = std::find_if(candidates.begin(), candidates.end() - 1, [&](const Candidate& candidate) {
     const std::vector<LaneReason> reasons =
         reasons_of(under_test, kind.subject, corpus::pair_of(*candidate.entry), truth_of(*candidate.entry));

@@ -26,12 +26,12 @@ struct LaneReason {
 };
 
 // Returns the reasons of the subject's lanes under test that are wrong on the pair. If a lane's computation is not
-// known, its reason may come from the lane that compiles the same source and rounds every operation as written. That
-// lane must be wrong in the same way.
+// known, its reason may come from the lane that compiles the same source and rounds every operation as written, if that
+// lane is wrong in the same way.
 std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_view subject, const AnyPair& pair,
                                    Verdict truth);
 
-// At most this many kinds are listed, shown on cards, or mapped. There may be hundreds, and most have only a few pairs.
+// At most this many kinds are listed, shown on cards, or mapped. A campaign may have hundreds, mostly with few pairs.
 inline constexpr std::size_t kMostShown = 40;
 
 // The truth recorded in a campaign's case.

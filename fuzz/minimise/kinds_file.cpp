@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads and writes failures.json. Reading checks that it agrees with the summary and the cases beside it.
+// Reads and writes failures.json. A file that is read must agree with the summary and the cases beside it.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -37,7 +37,7 @@ void expect(bool possible, const std::string& found) {
   if (!possible) throw Impossible(found);
 }
 
-// A signature in the summary, and its case file. Its first pair determines the signature's kinds.
+// A signature in the summary, and its case file, whose first pair determines the signature's kinds.
 struct Case {
   std::string key, file;
   std::uint64_t pairs = 0;
@@ -202,7 +202,7 @@ void expect_pairs(const Known& known, const Json& kind) {
 }
 
 // Checks that each lane of `own` that is wrong on a signature's first pair is in a kind with that signature. Also
-// checks that the kinds have at least as many audited reasons as there are such lanes.
+// checks that the kinds have at least as many audited reasons as there are wrong lanes on first pairs.
 void expect_all_covered(const Known& known, const Json& kinds) {
   std::vector<std::set<std::string>> covered(known.cases.size());
   std::map<std::string, std::uint64_t> told, least;  // audited reasons, by subject

@@ -40,7 +40,7 @@ std::vector<BasicPair<Real>> decided_alike(const Failure& failure, std::vector<B
   return pairs;
 }
 
-// Decides in one thread at a time, because a device requires that.
+// Decides in one thread at a time if there is a device, because a device requires that.
 std::vector<Verdict> decide_in_turn(const SelectedLanes& under_test, const AnyPair& pair) {
   static std::mutex mutex;
   std::vector<const Lane*> apart;
@@ -49,7 +49,7 @@ std::vector<Verdict> decide_in_turn(const SelectedLanes& under_test, const AnyPa
   return decide(under_test, pair, apart);
 }
 
-// Replaces the worst pair so far with this one if its margin is larger. Bounds on the margins nearly always decide.
+// Replaces the worst pair so far with this one if its margin is larger, which bounds on it nearly always decide.
 template <class Real>
 void keep_worst(Minimised& result, const BasicPair<Real>& pair, Verdict verdict) {
   if constexpr (std::is_same_v<Real, float>) {
@@ -281,8 +281,8 @@ struct Walk {
   }
 
   // First simplifies the pair without computing causes, because they are expensive. If the result lacks the cause, goes
-  // back to a pair with the cause and simplifies it, checking the cause of each step. Then simplifies without computing
-  // causes again. Repeats this until nothing changes, so that minimising the result again would change nothing.
+  // back to a pair with the cause and simplifies it, checking the cause of each step. Then simplifies again, without
+  // computing causes. Repeats this until nothing changes, so that minimising the result again would change nothing.
   void run() {
     go_down();
     while (!ends_with_cause()) {

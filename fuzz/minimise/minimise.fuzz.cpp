@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the minimiser on failing pairs, with arbitrary bits or from any stratum. It must end within its limit. Its
-// result must fail in the same way, for the stated reason, and be at most as complex as the pair.
+// Runs the minimiser on failing pairs, with arbitrary bits or from any stratum. The minimiser must end within its
+// limit. Its result must fail in the same way as the pair, for the stated reason, and be at most as complex.
 #include "fuzz/minimise/minimise.h"
 
 #include "core/fuzz_pair.h"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMost = kLeastMoved + 5'000;
 
-// If the first byte is 255, a stratum and an index follow, because drawn pairs fail more often.
+// If the first byte is 255, the other bytes are a stratum and an index: the pairs that strata draw fail more often.
 Pair drawn_or_given(std::string_view bytes) {
   if (bytes.size() != 5 || bytes[0] != '\xff') return finite_pair_of(bytes);
   std::uint64_t index = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The minimiser shrinks a pair while one algorithm's failure and its cause stay the same. It ends when no single move
-// makes the pair simpler. The coordinate type does not change. simplicity.h defines which pair is simpler, and moves.h
-// defines the single moves.
+// The minimiser shrinks a pair while one algorithm's failure and its cause stay the same. The search ends when no
+// single move makes the pair simpler. The coordinate type does not change. simplicity.h defines which pair is simpler,
+// and moves.h defines the single moves.
 #pragma once
 
 #include <optional>
@@ -16,10 +16,10 @@
 namespace graze::fuzz {
 
 // One algorithm's failure on a pair: the truth, the nesting, and the verdict of each lane. Another pair fails alike if
-// all of these are the same for it.
+// its truth, nesting and verdicts are the same.
 struct Failure {
-  // From the exact decision in core/exact/exact.h; the oracle confirms the results (see confirm). It records only the
-  // margin's sign, because a fixed size would force the coordinates to keep many digits.
+  // Computed by the exact decision in core/exact/exact.h; the oracle confirms the results (see confirm). Has only the
+  // margin's sign, because a fixed size of the margin would force the coordinates to keep many digits.
   Relation truth;
   Nesting nesting;
   std::vector<const Lane*> lanes;    // the algorithm's lanes among the lanes under test
@@ -31,8 +31,7 @@ struct Failure {
   template <class Real>
   bool has_shape_of(const BasicPair<Real>& pair) const;
 
-  // The first lane that is wrong on the pair, ignoring lanes excused by their convention.   Requires: there is such a
-  // lane.
+  // The first lane that is wrong on the pair, ignoring lanes excused by their convention.   Requires: a lane is wrong.
   const Lane& first_wrong(const AnyPair& pair) const;
 };
 
@@ -45,11 +44,12 @@ bool fails_alike(const Failure& failure, const AnyPair& pair);
 // The signature of a pair that fails alike, with the bucket of that pair's own margin.
 analysis::Signature signature_of(const Failure& failure, const AnyPair& pair);
 
-// Why a failure happens. Its lanes may be wrong for different reasons; only the reason of the first wrong lane in table
-// order counts. A pair fails for the same reason if the cause is the same. If no result of the lane's run overflows or
-// underflows, none may do so on the minimised pair; otherwise the pair would shrink to coordinates around 1e-30. For
-// foreign code, the first pair's cause may be a guess (rounding or logic, not settled). Then the cause on a simpler
-// pair replaces the guess if it is settled, or if it is the vertex order and the guess was rounding.
+// Why a failure happens. A failure's lanes may be wrong for different reasons; only the reason of the first wrong lane
+// in table order counts. A pair fails for the same reason if the cause is the same. If no value in the lane's run
+// overflows or underflows on the first pair, none may do so on the minimised pair; otherwise the pair would shrink to
+// coordinates around 1e-30. For foreign code, the first pair's cause may be a guess (rounding or logic, not settled). A
+// simpler pair's cause replaces a guess if this cause is settled, or if it is the vertex order and the guess was
+// rounding.
 struct Reason {
   analysis::Cause cause;
   bool in_range;  // no result of the lane's source, run without contraction, leaves the exponents' range
@@ -82,10 +82,10 @@ struct Minimised {
   double worst_ulps = 0;         // that margin, of either sign; the worst pair may have another cause
 };
 
-// Repeats rounds over all kinds of moves until a round changes nothing. From each kind it takes the simplest pair that
-// fails alike. A move that helped is repeated 2, 4, 8, … times at once while the pair gets simpler, and then bisected.
-// Finding a cause is expensive, so the cause is checked only at the end. If it was lost, a bisection finds the step
-// that lost it, and from there on every pair's cause is checked.
+// Repeats rounds over all kinds of moves until a round changes nothing. From each kind of move it takes the simplest
+// pair that fails alike. A move that helped is repeated 2, 4, 8, … times at once while the pair gets simpler, and then
+// bisected. Finding a cause is expensive, so the cause is checked only at the end. If the cause was lost, a bisection
+// finds the step that lost it, and every later pair's cause is checked.
 // known: earlier results for this failure; if the search reaches one of them, it returns that result.
 // most: the limit, instead of most_moved.
 // Requires: fails_alike(failure, pair), most > kLeastMoved.   Throws: OracleMismatch.

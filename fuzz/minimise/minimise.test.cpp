@@ -252,7 +252,7 @@ const SelectedLanes& under_test_of_doubles() {
   return all;
 }
 
-// Tests the same guarantees on pairs of doubles from every stratum. The results are pairs of doubles too.
+// On pairs of doubles from every stratum, too, the results are one-minimal pairs of doubles that fail alike.
 TEST(MinimiseDoubles, MinimisesToAOneMinimalPairThatFailsAlike) {
   std::map<analysis::Cause, int> causes;
   int minimal = 0, all = 0;
@@ -344,7 +344,7 @@ TEST(Minimise, EndsWithinItsLimit) {
   EXPECT_GT(stopped, 10);
 }
 
-// If the search reaches a known result, it returns that result. Without it, the search would end at the same pair.
+// If the search reaches a known result, it returns that result, the pair at which it would end anyway.
 TEST(Minimise, EndsWhereAnotherCaseEnded) {
   for (const Case& c : cases_of(strata::Stratum::near_vertex_face, 1)) {
     SCOPED_TRACE(c.name);

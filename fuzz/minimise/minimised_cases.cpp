@@ -122,8 +122,8 @@ std::vector<MinimisedCase> minimise_cases(const SelectedLanes& under_test, const
     } catch (const oracle::OracleMismatch&) {
       throw;
     } catch (const std::runtime_error&) {
-      // Foreign code may give a different verdict the second time, for example because of timing. Then the original
-      // pair becomes the result.
+      // If foreign code gives a different verdict the second time, for example because of timing, the original pair
+      // becomes the result.
       if (!result.failure.lanes.front()->foreign) throw;
       result.result.pair = result.result.worst = result.original;
       result.result.one_minimal = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Minimised cases in files. The cases in a file are not changed. The minimised result (kind=minimised) and the worst
-// pair found on the way to it (kind=worst) are inserted before them.
+// Minimised cases in files. The minimised result (kind=minimised) and the worst pair found on the way to it
+// (kind=worst) are inserted before a file's cases, which are not changed.
 #pragma once
 
 #include <filesystem>

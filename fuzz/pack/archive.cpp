@@ -33,7 +33,7 @@ struct BadArchive : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Throws: BadArchive if a file's name is also the folder of another file.
+// Throws: BadArchive if a file has the same name as another file's folder.
 void expect_no_folder(const std::vector<PackedFile>& files) {
   std::vector<std::string> names;
   for (const PackedFile& file : files) names.push_back(file.name);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One file with a campaign and everything needed to run it again. It has pack.json, the results in campaign/, and the
-// subjects' sources, meshes and the scene in files/. docs/formats.md describes pack.json.
+// A pack is one file with a campaign and everything needed to run it again: pack.json (see docs/formats.md), the
+// results in campaign/, and the subjects' sources, meshes and the scene in files/.
 #pragma once
 
 #include <filesystem>
@@ -24,7 +24,7 @@ Pack pack_campaign(const std::filesystem::path& directory);
 Pack read_pack(const std::filesystem::path& file);
 
 // A campaign's spec with the pack's subjects, meshes and scene, under their names within files/.
-// Throws: std::runtime_error if they are not the spec's; nlohmann's exceptions if keys or types are wrong.
+// Throws: std::runtime_error if the pack's inputs are not the spec's; nlohmann's exceptions if keys or types are wrong.
 Json spec_of_pack(Json spec, const Json& manifest);
 
 }  // namespace graze::fuzz

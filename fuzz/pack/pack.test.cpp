@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests damaged and hostile archives. Each is refused with a one-line error, and nothing is written outside a new
-// folder.
+// Damaged and hostile archives are refused with a one-line error, and nothing is written outside a new folder.
 #include "fuzz/pack/pack.h"
 
 #include <SQLiteCpp/SQLiteCpp.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interface to the processes that `mpirun` started together. Only mpi.cpp includes MPI. It is a separate library
-// beside the program, loaded only under mpirun, so the program also runs without MPI.
+// The interface to the processes that `mpirun` started together. Only mpi.cpp includes MPI, and becomes a separate
+// library that is loaded only under mpirun, so the program also runs without MPI.
 #pragma once
 
 #include <cstdint>

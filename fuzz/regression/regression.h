@@ -43,7 +43,7 @@ struct RegressionCase {
 // The fields of an entry for which RegressionCase has no members.
 std::vector<std::pair<std::string, std::string>> other_fields(const corpus::Entry& entry);
 
-// Cases by the signature with which they were first seen.
+// The cases, each under the signature with which it was first seen.
 using RegressionCorpus = std::map<std::string, RegressionCase>;
 
 // The name of a case: its subject and a hash of its signature.

@@ -21,7 +21,7 @@ constexpr Pair kTouching{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {1, 2, 4
 constexpr Pair kShifted{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{2, 1, 0}, {2, 2, 4}, {3, 1, 4}}};
 const std::string kSignature = "point/22/skew/0/moller_1997:-f32/cpu";
 
-// All lanes. Those in `wrong` give the verdict disjoint, which is wrong on these pairs; the others are right.
+// All lanes. The lanes in `wrong` give the verdict disjoint, which is wrong on these pairs; the other lanes are right.
 struct Liars {
   std::vector<const Lane*> lanes;
   std::set<std::string> wrong{"moller_1997/f32/cpu"};

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Combines the words of both, as in "device; twin, verified on …".
+// Combines the words of two executors, as in "device; twin, verified on …".
 std::string common_words(const std::string& one, const std::string& other) {
   std::set<std::string> words;
   for (const std::string& text : {one, other}) {
@@ -57,7 +57,7 @@ std::string named(const StoreSpec& store) {
   return store.directory.string() + (store.shard.whole() ? "" : ", shard " + store.shard.name());
 }
 
-// The folder for a missing shard, beside the other shards. It does not exist yet, or holds some of the shard's results.
+// The folder for a missing shard, beside the other shards: a new folder, or one that holds some of the shard's results.
 fs::path place_for(const Shard& shard, const StoreSpec& beside, const fs::path& out) {
   const auto fits = [&](const fs::path& place) {
     if (place.lexically_normal() == out.lexically_normal()) return false;
@@ -146,12 +146,12 @@ bool holds_whole(const fs::path& out, const Json& spec) {
 
 void expect_new(const fs::path& out, const Json& spec) {
   if (!fs::exists(out) || (fs::is_directory(out) && fs::is_empty(out))) return;
-  const std::string why = holds_whole(out, spec) ? "it already holds this campaign, complete" : "it holds other files";
+  const std::string why = holds_whole(out, spec) ? "it already holds this whole campaign" : "it holds other files";
   throw UsageError(cannot("use", out, why + "; choose a new or an empty directory as --out"));
 }
 
-// The folder that `out` names, after following links. The merged campaign is renamed to it at the end.
-// Throws: UsageError if that is impossible.
+// The folder that `out` names, after following links; at the end, the merged campaign is renamed to it.
+// Throws: UsageError if the campaign cannot be renamed to this folder.
 fs::path place_of(const fs::path& out, const Json& spec) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(behind_links(out), error);
@@ -170,7 +170,7 @@ fs::path place_of(const fs::path& out, const Json& spec) {
 
 constexpr std::string_view kCampaignPart = "campaign.graze.part";
 
-// The folder beside the target, in which kCampaignPart is built. A killed merge may have left such a folder.
+// The folder beside the target, in which kCampaignPart is built; a killed merge may have left it.
 fs::path folder_beside(const fs::path& place) {
   std::error_code error;
   fs::path part = place;
@@ -221,7 +221,7 @@ std::map<std::string, Json> timings_of(const std::vector<StoreSpec>& stores) {
   return by_machine;
 }
 
-// Combines the rounds of a hunt's parts into the campaign's rounds, from which it takes its cases.
+// Combines the rounds of a hunt's parts into the campaign's rounds, from which the campaign takes its cases.
 // held: the number of pairs in each part.
 void join_rounds(const std::vector<StoreSpec>& stores, const std::vector<std::uint64_t>& held, const Sums& sums,
                  Campaign& campaign) {

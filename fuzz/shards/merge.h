@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Merges several stores into one campaign: shards, ranks, or results of earlier merges. The result has the same bytes
 // as one run without shards, whatever the number, order and executors of the shards. Shards of a hunt are separate
-// searches, so each kind of failure counts once, with its first pair. Their order does not matter either.
+// searches, in any order, so each kind of failure counts once, with its first pair.
 #pragma once
 
 #include <filesystem>
@@ -24,7 +24,7 @@ struct MergeOptions {
 Outcome merge(const MergeOptions& options);
 
 // Combines the executors of two builds that are otherwise the same, as in "device; twin, verified on …".
-// Throws: std::runtime_error that names the second directory if the builds differ in anything else.
+// Throws: std::runtime_error that names the second directory if the builds differ in more than their executors.
 Json common_build(const Json& one, const Json& other, const std::filesystem::path& directory);
 
 }  // namespace graze::fuzz

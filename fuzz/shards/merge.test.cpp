@@ -116,7 +116,7 @@ TEST_F(MergeTest, APartialMergeIsACampaignToGoOnWith) {
   expect_same_bytes("whole", "partial");
 }
 
-// The folder beside the target is replaced only if a killed merge left it. Anything else with that name is kept.
+// The folder beside the target is replaced only if a killed merge left it; anything else of that name is kept.
 TEST_F(MergeTest, OnlyWhatAKilledMergeLeftIsReplaced) {
   const std::vector<fs::path> parts = run_shards(2);
   const fs::path out = root_ / "all", beside = out.string() + kPart, other = root_ / "other";
@@ -209,7 +209,7 @@ TEST_F(MergeTest, WhatIsWrongGetsOneLineAndLeavesNothing) {
   EXPECT_EQ(refusal(parts), "");
 }
 
-// The command that runs a part of a campaign again requests as many pairs as the user did, not counting the mesh's.
+// The command that reruns a part of a campaign requests as many pairs as the user did, not counting the mesh's.
 TEST_F(MergeTest, CommandsNameTheMeshAndThePairsBesideIt) {
   fs::create_directories(root_);
   const std::string file = (root_ / "mesh.off").string();

@@ -19,9 +19,9 @@ class Lines {
   // skipped.
   Lines(const MeshBytes& file, char comment, Continuation continuation = Continuation::none);
 
-  // Moves to the next line that has a word.   Returns: whether there is such a line.
+  // Moves to the next line that has a word.   Returns: false if no line with a word is left.
   bool next();
-  // Like next.   Throws: an error that names `expected` if there is no such line.
+  // Like next.   Throws: an error that names `expected` if no line is left.
   void expect_next(const std::string& expected);
 
   const std::vector<std::string_view>& words() const { return words_; }

@@ -54,7 +54,7 @@ TEST(ReadOff, TakesItsVariantsAndCountsWhatItSkips) {
 }
 
 TEST(ReadOff, RoundsDecimalsOnce) {
-  // A double cannot hold the first number's last digit. Without that digit, it is a tie between two float32 numbers.
+  // A double cannot hold the first number's last digit, without which it is a tie between two float32 numbers.
   const Soup soup = read_off({"m", "OFF\n3 1 0\n16777217.0000000001 0 0\n0.1 0 0\n-0 1e-46 7.1e-46\n3 0 1 2\n"});
   EXPECT_EQ(soup.vertices[0].x, 16777218.0f);
   EXPECT_EQ(soup.vertices[1].x, 0.1f);

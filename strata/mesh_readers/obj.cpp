@@ -23,7 +23,7 @@ constexpr Skipped kSkipped[] = {{"vt", "texture coordinates"},
                                 {"usemtl", "materials"},
                                 {"mtllib", "material libraries"}};
 
-// The largest vertex index used by a face so far, and that face's line. The vertex may be defined later.
+// The largest vertex index used by a face so far (the vertex may be defined later), and that face's line.
 struct Largest {
   std::uint64_t vertex = 0;
   std::size_t line = 0;
@@ -57,7 +57,7 @@ void add_vertex(Soup& soup, const Lines& lines) {
   soup.add_vertex({coordinate(1), coordinate(2), coordinate(3)});
   for (std::size_t i = 4; i <= count; ++i) lines.number(i, "a number or the end of the line");
   if (count == 5 || count > 7)
-    lines.fail("three coordinates, a weight or a colour", std::to_string(count) + " numbers");
+    lines.fail("three coordinates, optionally with a weight, a colour or both", std::to_string(count) + " numbers");
   if (count == 4 || count == 7) ++soup.skipped["weights"];
   if (count >= 6) ++soup.skipped["vertex colours"];
   if (soup.vertices.size() > std::numeric_limits<std::uint32_t>::max()) lines.fail("fewer than 2^32 vertices", "more");

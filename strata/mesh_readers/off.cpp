@@ -13,7 +13,7 @@ struct Header {
   std::uint64_t vertices = 0, faces = 0;
 };
 
-// Parses a keyword such as "CNOFF".   Returns: whether the word is such a keyword.
+// Parses a keyword such as "CNOFF".   Returns: whether the word is a keyword.
 bool take_keyword(std::string_view word, Header& header) {
   const auto take = [&word](std::string_view prefix) {
     const bool found = word.starts_with(prefix);

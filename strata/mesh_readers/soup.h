@@ -19,7 +19,7 @@
 namespace graze::strata {
 
 // How many coordinates float32 cannot hold, and how far rounding moved them. `beyond` counts coordinates that no
-// program would print for a float32, such as 1000000.01. It does not count 0.1, which programs print for a float32.
+// program would print for a float32, such as 1000000.01, but not 0.1, which programs print for a float32.
 struct Rounding {
   std::uint64_t coordinates = 0, rounded = 0, beyond = 0;
   double most = 0;  // no coordinate moved by more than this
@@ -45,7 +45,7 @@ struct Rounding {
 std::vector<std::string> rounding_note(const std::string& file, const Rounding& rounding);
 
 // The same for callers that use the doubles: "FILE: decided in doubles, because 6 of 18 coordinates have more digits
-// than float32 holds". Empty if no coordinate has more digits.
+// than float32 holds". Empty if float32 holds all digits.
 std::vector<std::string> doubles_note(const std::string& file, const Rounding& rounding);
 
 // The float32 and the double nearest to a number in a file.

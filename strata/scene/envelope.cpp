@@ -11,8 +11,8 @@
 namespace graze::strata {
 namespace {
 
-// Fills the gaps between the file's quantiles by repeatedly inserting the geometric mean of two neighbours. It needs
-// only square roots, which are the same on every machine.
+// Fills the gaps between the file's quantiles by repeatedly inserting two neighbours' geometric mean. Geometric means
+// need only square roots, which are the same on every machine.
 Quantiles spread(const std::vector<double>& values) {
   Quantiles quantiles{};
   if (values.size() == 1) {
@@ -55,7 +55,7 @@ std::string coordinates_stay_within(const SceneFile& scene) {
   return fmt::format("your coordinates stay within {} … {} {}", low, high, scene.units);
 }
 
-// The number of the grid point nearest to x. The result may be off by one if it is 2^51 or more.
+// The index n of the grid point nearest to x, which may be off by one if it is 2^51 or more.
 double number_at(const Grid& grid, double x) {
   const double steps = grid.decimal ? x * grid.scale : x / grid.scale;
   return std::fabs(steps) < 0x1p51 ? in_scene::number_of(grid, x) : std::trunc(steps);
@@ -159,7 +159,7 @@ std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {
                            scene.grid ? "grid steps" : "ulps of your largest coordinate", kLeastSteps);
       for (int axis = 0; axis < 3; ++axis) {
         if (component(numbers.first, axis) > component(numbers.last, axis))
-          return fmt::format("your extent holds no multiple of {}, an ulp of your largest coordinate, in {}",
+          return fmt::format("your extent contains no multiple of {} (one ulp of your largest coordinate) along {}",
                              numbers.exact.scale, "xyz"[axis]);
       }
       break;

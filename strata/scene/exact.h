@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact contacts and exactly coplanar pairs. Their coordinates lie on the scene's grid, or are multiples of an ulp of
-// its largest coordinate. On a decimal grid, the contacts are exact for the decimal numbers, before rounding.
+// Exact contacts and exactly coplanar pairs, whose coordinates lie on the scene's grid, or are multiples of an ulp of
+// the scene's largest coordinate. On a decimal grid, the contacts are exact for the decimal numbers, before rounding.
 #pragma once
 
 #include "strata/coplanar.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scene: an envelope for pairs, which gives them the sizes, places and ulps of a user's data. The strata of strata.h
-// are drawn within it under the same rules: as pure functions, with the same bits on host and device.
+// are drawn within a scene under the same rules: as pure functions, with the same bits on host and device.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ struct Scene {
 
 inline namespace GRAZE_FP {
 
-// The pair with this index. It lies within the extent and on the grid. Up to rounding, no edge is longer than the
+// The pair with this index, which lies within the extent and on the grid. Up to rounding, no edge is longer than the
 // scene's longest edge. A pair that does not fit into the extent along an axis is flattened along that axis.
 // Requires: a float32 scene that can contain the stratum (see left_out); compiled without contraction.
 GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, const Scene& scene, std::uint64_t index);

@@ -345,7 +345,7 @@ TEST(Scene, WhatItCannotContainIsLeftOutWithTheReason) {
   EXPECT_EQ(why("extent = [90000, 99000]\nedges = [0.1, 0.3]", Stratum::exact_contact),
             "your longest edge spans 38.4 ulps of your largest coordinate, fewer than 64");
   EXPECT_EQ(why(kScenes[6].second, Stratum::exact_contact),
-            "your extent holds no multiple of 0.125, an ulp of your largest coordinate, in y");
+            "your extent contains no multiple of 0.125 (one ulp of your largest coordinate) along y");
   EXPECT_EQ(why(kScenes[1].second, Stratum::coplanar_wide), "your longest edge spans 18 grid steps, fewer than 64");
   EXPECT_EQ(why(kScenes[1].second, Stratum::lattice), "drawn");
   EXPECT_EQ(why(kScenes[2].second, Stratum::lattice), "your longest edge spans 2.4e+03 grid steps, more than 64");

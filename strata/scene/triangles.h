@@ -100,8 +100,7 @@ GRAZE_HD inline Space axis_plane(int normal) {
   return {true, unit_axis((normal + 1) % 3), unit_axis((normal + 2) % 3)};
 }
 
-// A triangle of this form, moved so that a random corner is at the origin. That corner is vertex [0], and the others
-// lie on the given side.
+// A triangle of this form with a random corner, vertex [0], at the origin; the other vertices lie on the given side.
 GRAZE_HD inline void put_vertex(auto& draws, const Space& space, const Form& form, const Vec& side,
                                 Vec (&triangle)[3]) {
   const std::uint32_t corner = draws.below(3);

@@ -21,8 +21,8 @@ std::uint64_t not_right(const Agreement& agreement) {
   return agreement.of[0].not_right() + agreement.of[1].not_right();
 }
 
-// The index of the smallest tolerance under which the lanes clearly agree. If there is none, the smallest under which
-// they may agree, or else the one with the fewest differing verdicts.
+// The index of the smallest tolerance under which the lanes clearly agree. If there is none, the smallest tolerance
+// under which they may agree; if there is none either, the tolerance with the fewest differing verdicts.
 std::size_t best_of(const CurveOf<Agreement>& curve, const Agreement& zero, double max_rate) {
   const auto rank = [&](const Agreement& point) {
     const Agrees agree = agrees(point, max_rate);

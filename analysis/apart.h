@@ -24,7 +24,7 @@ class ApartFrom {
 
 enum class Ended { in_order, crashed, silent };
 
-// Runs the work. Each step may take `seconds`.   result: the data that the work passed to `finish`, if it ended
+// Runs the work. Each step may take at most `seconds`.   result: the data that the work passed to `finish`, if it ended
 // normally.
 // Throws: std::runtime_error if no process can be started; the message names the lane.
 Ended run_apart(const Lane& lane, double seconds, const std::function<void(const ApartFrom&)>& work,

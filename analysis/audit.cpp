@@ -10,7 +10,7 @@ Settled both(bool right_without, bool wrong_alone) {
   return !right_without ? Settled::not_without : wrong_alone ? Settled::yes : Settled::not_alone;
 }
 
-// Audits all contractions together, if their sites are not known, as for those of the host's compiler.
+// Audits all contractions together, if their sites are not known, as with the host's compiler.
 Settled of_all_contraction(const LaneExplanation& lane, const AnyPair& pair, Verdict truth) {
   const Lane& row = *lane.lane;
   if (lane.evidence == Evidence::none) return Settled::unknown;

@@ -104,7 +104,7 @@ Corrected corrected(const Wrong& wrong, const std::vector<std::size_t>& comparis
 }
 
 // Tries every smaller set, and every earlier set of the same size. The four pairs come from bug reports: a version that
-// corrected values instead of outcomes named two comparisons where one is enough, or one that is not the first.
+// corrected values, not outcomes, named two comparisons where one is enough, or one that is not the first.
 TEST(Deciding, IsTheSmallestSetAndOfEqualOnesTheFirst) {
   std::vector<Wrong> some;
   for (std::size_t i = 0; i < all_wrong().size(); i += 7) some.push_back(all_wrong()[i]);

@@ -28,7 +28,7 @@ struct Blame {
 Blame blame(const Lane& lane, const AnyPair& pair, const std::function<void()>& asked = {});
 
 // Like `blame`, for foreign code, which may crash or hang when some of its operations are fused. The search runs in a
-// separate process, and each verdict may take `seconds`. Deterministic if no verdict takes longer.
+// separate process, and each verdict may take at most `seconds`. Deterministic if no verdict times out.
 Blame blame_apart(const Lane& lane, const AnyPair& pair, double seconds);
 
 }  // namespace graze::analysis

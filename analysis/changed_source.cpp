@@ -25,7 +25,7 @@ DecidingNumber told(const Lane& lane, const std::vector<subjects::Epsilon>& numb
   return result;
 }
 
-// A number far below all of these, but large enough that its products do not underflow at once.
+// A number far below all the given numbers, but large enough that its products do not underflow at once.
 double far_below(const std::vector<subjects::Epsilon>& numbers) {
   constexpr double kAboutFltEpsilon = 1e-7;  // for FLT_EPSILON, whose value is not in the source
   double least = 1;
@@ -65,7 +65,7 @@ std::optional<InitialValues> by_initial_values(const Lane& lane, Verdict truth,
     right[zero] = verdict == truth;
   }
   const auto word = [](bool is_right) { return is_right ? "right" : "wrong"; };
-  std::string words = fmt::format("with zero in variables without a value it is {}, with another pattern it is {}",
+  std::string words = fmt::format("with zero in uninitialised variables it is {}, with another pattern it is {}",
                                   word(right[true]), word(right[false]));
   if (right[false] != right[true]) return InitialValues{std::move(words), true};
   const std::vector<std::string> warnings_are_errors = {"-Werror=uninitialized", "-Werror=maybe-uninitialized"};

@@ -33,7 +33,7 @@ struct InitialValues {
 
 // Finds whether the verdict depends on uninitialised variables: whether it becomes right if the compiler sets them to
 // zero or to a pattern. If both make it right, the reason may be the changed machine code, which on an x87 rounds in
-// other places. In that case the compiler must also warn of an uninitialised variable.
+// other places; so in that case the compiler must also warn of an uninitialised variable.
 // verdict_of: the verdict of the changed code.   Requires: the lane is wrong on the pair.
 std::optional<InitialValues> by_initial_values(const Lane& lane, Verdict truth,
                                                const std::function<Verdict(const DecideBlock& block)>& verdict_of);

@@ -212,8 +212,8 @@ TEST_F(ExperimentsOnSources, ANumberBesideAnOpenUnderflowIsNotSettled) {
   EXPECT_FALSE(has(one.evidence, "larger scales")) << one.evidence;
 }
 
-// Initialising arrays changes the machine code, and on an x87 may change which values are spilled. To show such a
-// change, this code measures the size of its own machine code.
+// Initialising arrays changes the machine code, and on an x87 may change which values are spilled. This code reveals a
+// change of its machine code, because its verdict depends on that machine code's size.
 TEST_F(ExperimentsOnSources, OtherMachineCodeIsNoVariableWithoutAValue) {
   const Lane& lane = opened("measures", R"(
 extern "C" __attribute__((visibility("hidden"))) const char begin_here[], end_here[];

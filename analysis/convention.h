@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A subject's convention excludes some kinds of pairs. The subject's verdicts on them are neither right nor wrong.
+// A subject's convention excludes some kinds of pairs, on which the subject's verdicts are neither right nor wrong.
 #pragma once
 
 #include <span>

@@ -72,7 +72,7 @@ void sweep_curves(std::vector<CurveOf<Point>>& curves, int cube, const SweepPoli
   });
 }
 
-// Like sweep_curves, but for absolute curves, each point of which takes a build. Each curve has fewer points: 0, every
+// Like sweep_curves, but for absolute curves in which each point needs a build. So a curve has fewer points: 0, every
 // fourth power of two, and smaller steps around the best point. The range is wide, because the epsilon may bound a
 // length, an area or a volume.
 template <class Point, class SweepPolicies, class Best>

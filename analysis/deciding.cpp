@@ -41,7 +41,7 @@ class Search {
     return std::nullopt;
   }
 
-  // Describes each comparison of the set in the run in which the earlier ones are corrected.
+  // Describes each comparison of the set in the run in which the set's earlier comparisons are corrected.
   std::vector<Decider> told(const Corrected& set, const WithoutCause& without_cause) const {
     std::vector<Decider> result;
     for (const std::size_t comparison : set.comparisons) {

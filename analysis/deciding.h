@@ -13,7 +13,7 @@
 
 namespace graze::analysis {
 
-// A deciding comparison. Its outcome is wrong once the earlier ones of its set are corrected.
+// A deciding comparison. Its outcome is wrong in the run in which the earlier comparisons of its set are corrected.
 struct Decider {
   std::size_t place;  // index in that run's trace
   Seen<double> seen;
@@ -30,7 +30,7 @@ struct Decider {
   }
 };
 
-// The search tries no larger sets.
+// The size of the largest sets that the search tries.
 inline constexpr int kMostDeciding = 4;
 
 // Returns the trace of a run along this path without the cause, with one entry for each value or comparison.
@@ -39,7 +39,7 @@ using WithoutCause = std::function<Trace<double>(const Path&)>;
 // Returns the smallest set; among equally small sets, the first in order of execution. Empty if no set of up to
 // kMostDeciding comparisons makes the verdict right.
 // Requires: a replay of the lane that has evidence; the algorithm in exact arithmetic returns `truth`.
-// without_cause: empty if removing the cause means exact arithmetic.
+// without_cause: empty if the run without the cause is the run in exact arithmetic.
 std::vector<Decider> deciding_comparisons(const Lane& lane, const AnyPair& pair, Verdict truth, const Replay& replay,
                                           const WithoutCause& without_cause);
 

@@ -57,7 +57,7 @@ void compare_block(std::span<const BasicPair<Coordinate>> pairs, const Records& 
   }
 }
 
-// Calls f<Algorithm, Real>() for the lane's algorithm and scalar.   Requires: for doubles, a lane in double.
+// Calls f<Algorithm, Real>() for the lane's algorithm and scalar.   Requires: a lane in double if Coordinate is double.
 template <class Coordinate, class F>
 void for_lane(const Lane& lane, const F& f) {
   const auto call = [&]<class... Algorithm>(const std::tuple<Algorithm...>*) {
@@ -257,7 +257,7 @@ namespace {
 
 bool is_rounded(const Lane& lane) { return info_of(lane.variant).arithmetic == Arithmetic::rounded; }
 
-// Compares on a device.   Returns: false if that is not possible, or if the host's values differ from the device's.
+// Compares on a device.   Returns: false if no device can do so, or if the host's values differ from the device's.
 bool compare_on_device(const LanesCompared& lanes, const strata::PairSource& source, DiscrepancyCounts& to) {
   const Lane &first = *lanes.first, &second = *lanes.second;
   if (!cuda::records_on_device(first) || !cuda::records_on_device(second)) return false;

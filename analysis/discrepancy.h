@@ -21,7 +21,7 @@ namespace graze::analysis {
 struct DiscrepancyCounts {
   std::vector<std::uint64_t> counts;
   std::vector<std::uint64_t> maxima;  // bits of doubles; band_maxima::kFields for each question
-  // For each lane, the number of pairs on which its recorded run, which is compiled separately, gives another verdict.
+  // For each lane, the pairs on which the verdict of its recorded run, compiled separately, differs from its own.
   std::uint64_t unlike[2] = {0, 0};
 
   explicit DiscrepancyCounts(int algorithm = 0);

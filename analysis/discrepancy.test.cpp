@@ -133,8 +133,8 @@ std::uint64_t expect_no_bit_differs(const LanesCompared& lanes, const Discrepanc
   return compared;
 }
 
-// Without contraction, the published algorithms give the same bits on every processor. So on a device, cuda-nofma
-// kernels can replace a host lane.
+// Without contraction, the published algorithms give the same bits on every processor. So the cuda-nofma kernels can
+// compute a host lane's values on a device.
 TEST(Discrepancy, WithoutContractionNoBitDiffers) {
   const std::vector<LanesCompared> lanes = published(Variant::cpu, Variant::cuda_nofma);
   ASSERT_EQ(lanes.size(), 2u * kAlgorithmCount);
@@ -235,9 +235,10 @@ TEST(Discrepancy, SourcesOfBothTypesAddUp) {
   }
 }
 
-// A measurement by hand on 10^6 pairs from the thesis found that some signed distance differs on 59.7 % of the pairs,
-// the sign of one on 1 in 532, and the verdict on 1 in 3,330. It covers all six distances, but the algorithm computes
-// the last three only if the first three do not separate. So this test takes the last three from the swapped pair.
+// A measurement by hand, on 10^6 pairs of the stratum `thesis`, found that some signed distance differs on 59.7 % of
+// the pairs, the sign of one on 1 pair in 532, and the verdict on 1 in 3,330. The measurement covers all six distances,
+// but the algorithm computes the last three only if the first three do not separate. So this test takes the last three
+// from the swapped pair.
 TEST(Discrepancy, FindsTheSharesThatWereMeasuredByHand) {
   constexpr int kPairs = 100'000;
   const LanesCompared lanes{lane("interval_overlap/f32/cpu"), lane("interval_overlap/f32/cuda-fma")};
@@ -423,7 +424,7 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
 }
 
 // With and without contraction, each lane's value differs from the exact value by at most the bound on its rounding
-// error, even if numbers underflow. So signs can differ only within two bounds of 0.
+// error, even if numbers underflow. Therefore signs can differ only in values of at most twice the bound.
 TEST(Discrepancy, BoundsOfTheRoundingErrorHold) {
   std::uint64_t bounded = 0, near = 0, unbounded = 0;
   for (const LanesCompared& lanes : published(Variant::cpu, Variant::cuda_fma)) {
@@ -569,7 +570,7 @@ TEST(Discrepancy, VerdictsAloneAreThoseOfTheLanes) {
   }
 }
 
-// If one of a lane's values is off by an ulp, the counts show the value, the changed sign and its band.
+// If one of a lane's values is off by an ulp, the counts show this value, the change of its sign, and its band.
 TEST(Discrepancy, FindsAPlantedUlp) {
   const Pair pair{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0.25f, 0.25f, 1}, {0.25f, 0.25f, 2}, {1, 1, 2}}};
   const Lane& of = lane("moller_1997/f32/cpu");

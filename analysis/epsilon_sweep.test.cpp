@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Finds boxes that overlap by more than kEps. A negative kEps finds too many, a large one too few.
+// Finds boxes that overlap by more than kEps. It finds too many boxes if kEps is negative, too few if it is large.
 constexpr const char* kBoxes = R"(#include "own.h"
 const float kEps = 0.75f;
 int intersects(const float a[9], const float b[9]) {

@@ -100,7 +100,7 @@ class Trial {
     return open(std::move(images));
   }
 
-  // For code with an epsilon that also rounds too much: only doubles and a negligible number together make it right.
+  // Finds code that has an epsilon and also rounds too much: it is right only with doubles and a negligible number.
   std::optional<Experiment> by_number_in_doubles() const {
     const auto number = deciding_number(
         lane_, [this](const DecideBlock& block) -> bool { return ask_.asked(block, {pair_})[0]; },
@@ -219,7 +219,7 @@ class Trial {
     return found;
   }
 
-  // Code that is wrong in exact arithmetic may be right on this pair by luck. Float64 or another scale reveals this.
+  // Code that is wrong in exact arithmetic may be right on this pair by luck; float64 or another scale reveals it.
   Experiment by_build(const Lane& rounded, Cause cause, std::string evidence) const {
     return by_build(block_of(rounded), analysis::in_float64(rounded), cause, std::move(evidence));
   }
@@ -255,7 +255,7 @@ class Trial {
   }
 
   // Whether the lane is right at all scales above the turn, and wrong at all scales below it. Code that adds numbers
-  // with different units, such as lengths and areas, becomes wrong again at other scales. Code with a small epsilon
+  // with different units, such as lengths and areas, becomes wrong again at other scales; code with a small epsilon
   // does not.
   bool turns_once(Turn turn) const {
     if (turn.right < turn.wrong) return false;
@@ -309,7 +309,7 @@ class Trial {
   // pair's own scale.
   Experiment outside(Turn turn) const {
     // Code that adds lengths and areas may be wrong here even without exponent limits. For doubles, no wider type can
-    // rule this out.
+    // rule out such code.
     constexpr bool kIsNarrow = sizeof(Real) == sizeof(float);
     const bool by_float64 = ask_.right_in_float64_at_every_scale();
     const std::string text = turn.text(),

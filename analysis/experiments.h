@@ -28,18 +28,18 @@ namespace graze::analysis {
 //                products underflow. The unchanged code must be right at some larger scale at which no product of
 //                kUsualFactors leaves the exponent range.
 //   relative epsilon   a small number decides in the same way, but the unchanged code is wrong at every larger scale.
-//   uninitialised   the verdict depends on the value that the compiler gives to uninitialised variables. This is
-//                also the cause if any such value makes the verdict right and the compiler warns about such a variable.
-//                Then the coordinates must be small integers times a power of two, so that different machine code
-//                hardly rounds differently.
+//   uninitialised   the verdict depends on the value that the compiler gives to uninitialised variables. This is also
+//                the cause if any value makes the verdict right and the compiler warns about such a variable; the
+//                coordinates must then be small integers times a power of two, so that different machine code hardly
+//                rounds differently.
 //   underflow, overflow   the code is right at all scales at which no product of kUsualFactors leaves the exponent
-//                range, and the pair is smaller or larger than these scales allow. For doubles this is not settled:
-//                code that adds lengths and areas may be wrong even without exponent limits; no wider type excludes it.
+//                range, and the pair is smaller or larger than these scales allow. This is not settled for doubles,
+//                which have no wider type: code that adds lengths and areas may be wrong even without exponent limits.
 //   degenerate input, order-dependent, logic   the coordinates are small integers times a power of two. The code is
 //                wrong at all larger scales, where an absolute epsilon vanishes, and in doubles if it can be built so.
 //                No product of up to kMostFactors differences rounds, or only products of more than kUsualFactors
-//                round. In the second case, changing these products must leave the code wrong in the same ones
-//                of the pair's 72 orders. For logic, the code is wrong in all orders.
+//                round. In the latter case, images that change these longer products must not change in which of the
+//                pair's 72 orders the code is wrong. For logic, the code is wrong in all orders.
 //   rounding     the code is right in float64 at every scale, and wrong in float32 at every scale in the exponent
 //                range. If it has no function of doubles, its source with double in place of float serves as one.
 // If no cause can be shown, the result is not settled, and the cause is a guess. The guess is an epsilon if negligible

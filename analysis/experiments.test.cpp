@@ -192,7 +192,7 @@ Pair integers(std::uint32_t& state, int largest) {
   return pair;
 }
 
-// If small integers show logic as the cause, the steps show logic too, except for interval_overlap. Its rounded
+// If small integers show logic as the cause, the steps show logic too, except for interval_overlap, whose rounded
 // quotients separate touching intervals in either scalar, in all orders and at all multiples.
 TEST(Experiments, SmallIntegersShowNoRoundingAsLogic) {
   for (const bool with_doubles : {true, false}) {
@@ -437,7 +437,7 @@ TEST(Experiments, BlameExponentsOnlyWhereAProductLeavesThem) {
   };
   const Lane& large = wrong_where("wrong_above_16", [](float x) { return x >= 16; });
   const Lane& small = wrong_where("wrong_below_32", [](float x) { return x < 32; });
-  // Few products of these numbers underflow, and none overflows.
+  // On this pair, few products underflow and none overflows.
   const Pair pair{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1}, {1, 1, 1}, {30.000002f, 3, 1}}};
   for (const Lane* lane : {&large, &small}) {
     const Experiment found = experiment(*lane, decide_lane(*lane, pair), pair, truth_of(pair));

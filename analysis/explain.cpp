@@ -231,7 +231,7 @@ std::string what_rounding_decides(const DoublePair& pair, const Pair& stored, Ve
   return fmt::format("it rounds {} numbers; none of them decides alone", rounded);
 }
 
-// Explains a float32 lane that is right on the pair as float32 stores it, or whose pair float32 cannot store.
+// Explains a float32 lane whose verdict is right for the pair as float32 stores it, or whose pair float32 cannot store.
 LaneExplanation account_of_stored(const Lane& lane, Verdict verdict, const DoublePair& pair, const Pair& stored,
                                   Verdict truth) {
   LaneExplanation result = without_steps(lane, verdict, Cause::stored, true);
@@ -247,8 +247,8 @@ struct Own {
   AnyPair pair;
   Verdict truth;
 
-  // Whether storing explains the verdict: this pair and the given one differ in truth, and the lane is right on this
-  // one, or float32 cannot hold it.
+  // Whether storing explains the verdict: this pair's truth differs from the given pair's, and the lane is right on
+  // this pair, or float32 cannot hold the given pair.
   bool explains(Verdict verdict, Verdict truth_of_given) const {
     const bool ended = verdict == Verdict::crashed || verdict == Verdict::timed_out;
     return truth != truth_of_given && (verdict == truth || (truth == Verdict::declined && !ended));

@@ -29,12 +29,12 @@ namespace graze::analysis {
 //   contraction  the same source without contraction, on the same kind of processor, is right
 //   fast math    the same condition, for a lane whose operations the compiler may rewrite or approximate
 //   overflow, underflow   without contraction, and with the scalar's mantissa but unlimited exponents, the lane is
-//                right. Overflow if the upper limit alone makes it wrong, underflow if the lower limit alone does. If
-//                both or neither do, the cause is the limit that is exceeded first. Pairs that also need a longer
-//                mantissa are included, if the limit made the comparison go wrong
+//                right. The cause is overflow if the upper limit alone makes it wrong, and underflow if the lower limit
+//                alone does. If both or neither do, the cause is the limit that is exceeded first. Pairs that also need
+//                a longer mantissa are included, if the limit made the comparison go wrong
 //   rounding     no other condition holds
 // For foreign code, experiments find the cause (experiments.h). The causes from absolute_epsilon on apply only to
-// foreign code. The exception is policy:
+// foreign code, except for stored and policy:
 //   policy       the lane uses a policy, and the same lane without the policy is right, or the policy declined. If
 //                that lane is wrong too, the cause is that lane's, and is reported as not settled.
 enum class Cause {
@@ -77,7 +77,7 @@ struct Step {
   bool held = true;                        // in the lane's arithmetic
   bool holds = true;                       // in exact arithmetic
   bool wrong() const { return held != holds; }
-  // Whether exact arithmetic cannot compute these numbers, because it divides by zero earlier.
+  // Whether these numbers have no exact values, because exact arithmetic divides by zero before it reaches them.
   bool is_undefined() const { return std::isnan(left.exact) || std::isnan(right.exact); }
 };
 
@@ -101,7 +101,7 @@ struct LaneExplanation {
   bool cpu_is_right = false;      // for users' CUDA code with contractions: the cpu lane of the same source is right
   Settled settled;
   int bits_needed;  // the shortest mantissa, no shorter than the lane's, that gives the right verdict, as does every
-                    // longer one up to kMostBits; 0 if there is none, or if it would be chance (see explain.cpp)
+                    // longer one up to kMostBits; 0 if there is none, or if it may be chance (see explain.cpp)
   std::array<bool, kCoordinates> matters;  // false: no nudge of the coordinate changes the truth or the lane's verdict
   WrongOf orders, mirrored, scalings;      // see neighbours.h
   std::string experiment;  // for lanes without steps (foreign, under a policy, or `stored`): the evidence for the cause
@@ -137,17 +137,16 @@ Cause cause_of(const Lane& lane, const AnyPair& pair, Verdict truth);
 
 // Whether a result leaves the scalar's exponent range when the lane's source runs without contraction. If false, the
 // cause is neither overflow nor underflow. The check is fast because it reads the processor's floating-point flags, but
-// it may return true although no result leaves the range. Returns false for foreign code and lanes under a policy, for
+// it may return true even if no result leaves the range. Returns false for foreign code and lanes under a policy, for
 // which the answer is not known.
 bool leaves_exponents(const Lane& lane, const AnyPair& pair);
 
-// Returns one English sentence about a wrong algorithm, for a bug report; empty if none of its lanes is wrong. It names
-// the lanes that are wrong in the same way, with the numbers of one of them.
+// Returns one English sentence about a wrong algorithm, for a bug report; empty if none of its lanes is wrong. The
+// sentence names the lanes that are wrong in the same way, and has the numbers of one of them.
 std::string sentence(const Explanation& explanation, const AlgorithmInfo* subject);
 
-// Returns one sentence for each wrong algorithm. For a user's CUDA code, a second sentence may name the lines that make
-// its verdict differ from the cpu lane's. It is added if rounding only the products of these lines gives the cpu lane's
-// verdict.
+// Returns one sentence for each wrong algorithm. For a user's CUDA code, a second sentence names the lines that make
+// its verdict differ from the cpu lane's, if rounding only the products of these lines gives the cpu lane's verdict.
 std::vector<std::string> sentences(const Explanation& explanation);
 
 // Whether the sentence names lines that make CUDA code differ from the cpu lane.

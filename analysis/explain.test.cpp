@@ -126,8 +126,8 @@ TEST(Explain, AtAHugeScaleItOverflows) {
   EXPECT_FALSE(std::isfinite(lane.told()->left.lane));
 }
 
-// Even without exponent limits, 24 bits would not be enough. But the comparison's operand is NaN, so the limit is the
-// cause.
+// Even without exponent limits, 24 bits would not be enough here. The comparison's operand is NaN, however, so the
+// exponent limit is the cause.
 TEST(Explain, ARangeThatIsNotAllThatLacksIsStillTheCause) {
   const Pair pair = strata::generate(1, strata::Stratum::extreme_scale, 2280);
   const Explanation explanation = explain(pair, lanes_here());

@@ -88,7 +88,7 @@ std::string words(double x) {
 std::string exact_words(const oracle::Beside& value) { return std::isnan(value.exact) ? "NaN" : value.decimal; }
 
 // "a signed distance of exactly 0 into 1.2e-09": the difference of the compared numbers, though the lane does not
-// compute it. If it is not finite, names both numbers: "two interval ends of exactly 3 and 4 into infinity and 4".
+// compute it. If that is not finite, both numbers: "two interval ends of exactly 3 and 4 into infinity and 4".
 std::string turned(const LaneExplanation& lane, const Step& told) {
   if (told.is_undefined())
     return fmt::format("a division by exactly zero, after which no number is defined, into {} and {}",
@@ -139,7 +139,7 @@ std::string fused(const LaneExplanation& lane) {
   return fmt::format("nvcc fuses the product{} into the addition{} at {}", plural, plural, list(sites));
 }
 
-// Explains why the cause is not settled; empty if it is settled, or if the reason already includes this.
+// Explains why the cause is not settled; empty if it is settled, or if reason() already explains it.
 std::string doubt(const LaneExplanation& lane) {
   switch (lane.settled) {
     case Settled::not_without:

@@ -21,7 +21,7 @@ Limits limits_of(const ErrorsAt& origin) {
 
 bool is_right(const ErrorsAt& at, const Limits& limits) { return share_of(at.errors, at.pairs).high <= limits.least; }
 
-// points: from the origin outwards.
+// points: ordered from the origin outwards.
 template <class Points>
 RightSide side_of(const Points& points, const Limits& limits) {
   RightSide side{points.front().exponent, points.back().exponent, {}};

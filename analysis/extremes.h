@@ -25,8 +25,8 @@ struct RightSide {
   std::optional<int> worse;  // the first exponent at which the lane is shown to be less right
 };
 
-// The range in which a lane is as right as at the origin (the exponent nearest to 0). "Shown" means that the
-// 95 % intervals of both shares prove it.
+// The range in which a lane is as right as at the origin (the exponent nearest to 0); see kAsRight. "Shown" means that
+// the 95 % intervals of both shares prove it.
 struct RightRange {
   ErrorsAt origin;
   bool settled = false;  // false: too few pairs at the origin to compare with

@@ -11,8 +11,8 @@ namespace {
 using Points = std::vector<ErrorsAt>;
 
 TEST(RightRange, EndsBeforeTheFirstExponentThatIsNotShownToBeAsRight) {
-  // At 2^0 the share of errors is 10 %, with bounds of about 9.5 and 10.5 %. So a share up to 18 % is as right, and a
-  // share above 21 % is not.
+  // At 2^0 the share of errors is 10 %, with bounds of about 9.5 and 10.5 %. So a lane counts as equally right up to a
+  // share of 18 %, and as less right above 21 %.
   const auto range = right_range(Points{{-16, 9'000, 10'000},
                                         {-8, 1'500, 10'000},
                                         {0, 1'000, 10'000},

@@ -16,8 +16,8 @@ namespace graze::analysis {
 template <class Real>
 using Ask = std::function<std::vector<bool>(const std::vector<BasicPair<Real>>&)>;
 
-// Whether the coordinates are small integers times a power of two: up to 8 in float32, and up to 256 in float64. Then
-// no sum of 32 products of up to kUsualFactors coordinates or differences rounds.
+// Whether the coordinates are small integers times a power of two: up to 8 in float32, and up to 256 in float64. On
+// such a pair, no sum of 32 products of up to kUsualFactors coordinates or differences rounds.
 template <class Real>
 bool has_small_integers(const BasicPair<Real>& pair, Scalar scalar);
 
@@ -25,16 +25,16 @@ bool has_small_integers(const BasicPair<Real>& pair, Scalar scalar);
 template <class Real>
 bool holds_determinants(const BasicPair<Real>& pair, Scalar scalar);
 
-// The cause, if the products described at has_small_integers do not round in the widest arithmetic in which the code is
-// known to be wrong. Returns nothing if scaling the pair by 3 or 5 changes the orders in which the lane is wrong,
-// because then quotients or roots may decide. If products of kMostFactors may round, adding one axis to another must
-// not change these orders either. Rounded quotients can still be the real cause: for published algorithms on
-// such pairs they were so 18 of 18,237 times, always in interval_overlap.   Requires: has_small_integers; the lane is
-// wrong on the pair at all larger scales.
+// Finds why the code is wrong on a pair whose sums of products, as described at has_small_integers, do not round.
+// widest: the widest arithmetic in which the code is known to be wrong. Returns nothing if scaling the pair by 3 or 5
+// changes the orders in which the lane is wrong, because then quotients or roots may decide. The same holds for adding
+// one axis to another, if products of kMostFactors may round. Rounded quotients can still be the real cause: on such
+// pairs this happened for published algorithms 18 of 18,237 times, always in interval_overlap.   Requires:
+// has_small_integers; the lane is wrong on the pair at all larger scales.
 template <class Real>
 std::optional<Experiment> without_rounding(const BasicPair<Real>& pair, Scalar widest, const Ask<Real>& ask);
 
-// The other orders and mirror images of the pair on which the lane is wrong; at most kMostImages, evenly spaced.
+// Those of the pair's other orders and mirror images on which the lane is wrong; at most kMostImages, evenly spaced.
 template <class Real>
 std::vector<BasicPair<Real>> wrong_images(const BasicPair<Real>& pair, const Ask<Real>& ask);
 

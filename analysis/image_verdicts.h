@@ -27,8 +27,8 @@ struct Turn {
   std::string text() const { return fmt::format("scaled by 2^{} it is right, by 2^{} wrong", right, wrong); }
 };
 
-// The result of trying scales in range. right: whether the lane is right at the first scale; without a turn, the same
-// holds at all scales.
+// The result of trying scales in range. right: whether the lane is right at the first scale and, if there is no turn,
+// at all scales.
 struct ScaleSearch {
   std::optional<Turn> turn;
   bool right;
@@ -102,7 +102,7 @@ class ImageVerdicts {
     return result;
   }
 
-  // Finds a turn between these two scales.   Requires: the lane is wrong at the first and right at the second.
+  // Finds a turn between these two scales.   Requires: the lane is wrong at the first scale and right at the second.
   Turn bisected(int wrong, int right) const {
     while (std::abs(right - wrong) > 1) {
       const int middle = wrong + (right - wrong) / 2;

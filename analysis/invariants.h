@@ -36,7 +36,7 @@ inline constexpr InvariantInfo kInvariants[] = {
 };
 inline constexpr std::size_t kInvariantCount = std::size(kInvariants);
 
-// The exponents of two by which the images of `scale` are scaled.
+// The images of `scale` are the pair times 2^k, for each of these k.
 inline constexpr std::array kScales = {1, -1, 4, -4, 16, -16, 64, -64};
 
 // The pair's images, without the pair itself. Images that would lose bits are left out.
@@ -65,8 +65,8 @@ struct InvariantBroken : std::runtime_error {
 struct InvariantCount {
   std::uint64_t pairs = 0;    // pairs with an image, except those that the lane's convention excludes
   std::uint64_t changed = 0;  // pairs on which the verdict on some image breaks the invariant
-  // How many of the changed pairs, including the image that breaks the invariant, have no overflow or underflow when
-  // the lane's source runs without contraction. Known for published lanes without a policy; 0 for others.
+  // How many of the changed pairs, each with an image that breaks the invariant, have no overflow or underflow when the
+  // lane's source runs without contraction. Known for published lanes without a policy; 0 for others.
   std::uint64_t in_range = 0;
   InvariantCount& operator+=(const InvariantCount& other);
 };
@@ -80,7 +80,7 @@ struct InvariantCase {
 struct InvariantsOfLane {
   std::array<std::vector<InvariantCount>, kInvariantCount> counts;  // by invariant, then by source
   std::array<std::optional<InvariantCase>, kInvariantCount> simplest;
-  // For each of kScales, over all sources: the pairs with this image, and those whose verdict it changes.
+  // For each of kScales, over all sources: the number of pairs with this image, and of those whose verdict it changes.
   std::array<InvariantCount, kScales.size()> by_scale;
 
   InvariantCount total(Invariant invariant) const;

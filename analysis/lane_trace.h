@@ -47,11 +47,11 @@ Replay replay(const Lane& lane, const AnyPair& pair);
 // Runs the algorithm in the lane's scalar with the given contraction rule, and forces the outcomes of the path `lead`.
 Trace<double> run_led(const Lane& lane, const AnyPair& pair, Contraction rule, const Path& lead);
 
-// Returns the lane's own block on the host; for CUDA lanes, the twin's.   Throws: std::invalid_argument if there is
-// none.
+// Returns the lane's own block on the host; for CUDA lanes, the twin's.   Throws: std::invalid_argument if there is no
+// such block.
 DecideBlock block_of(const Lane& lane);
 
-// Decides the pair on the host; CUDA lanes use the twin.   Throws: std::invalid_argument if there is neither.
+// Decides the pair on the host; CUDA lanes use the twin.   Throws: std::invalid_argument if the lane has neither.
 Verdict decide_lane(const Lane& lane, const AnyPair& pair);
 
 }  // namespace graze::analysis

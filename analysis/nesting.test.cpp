@@ -82,7 +82,7 @@ TEST(Nesting, IsThatOfRationalNumbers) {
 }
 
 // The nesting does not depend on the number type that decides it, on scale, or on the order of vertices. Swapping the
-// triangles swaps it.
+// triangles swaps a_in_b and b_in_a.
 TEST(Nesting, IsThatOfTheImages) {
   std::map<Nesting, int> seen;
   for (const strata::StratumInfo& stratum : strata::kStrata) {

@@ -41,8 +41,8 @@ BasicPair<Real> moved(const BasicPair<Real>& pair, Extreme extreme, int k) {
   return is_finite(result) ? result : pair;
 }
 
-// The processor time of this thread. It excludes time in which other programs run, but these still slow the thread,
-// because they share its cache and its clock.
+// The processor time of this thread. It excludes time in which other programs run, but such programs still slow the
+// thread, because they share its cache and its clock.
 double processor_nanoseconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

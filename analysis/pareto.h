@@ -31,16 +31,16 @@ Cost quartiles(std::vector<double> nanoseconds);
 std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const strata::PairBlock& pairs, int passes,
                            Calls calls = Calls::of_blocks);
 
-// Why timing the lane would not time its code, as for twins and for programs that answer line by line. Empty if it can
-// be timed.
+// Why timing the lane would not time its code, as for twins and for programs that answer line by line. Empty if the
+// lane can be timed.
 std::string why_not_timed(const Lane& lane);
 
-// The costs of lanes. The time of a user's code is its own process's processor time, without communication. Each call
-// there decides one pair, unless the code takes blocks. A lane that is not timed, or failed on a pair, has no cost.
+// The costs of lanes. The time of a user's code is its own process's processor time, without communication. User code
+// that takes no blocks decides one pair per call. A lane that is not timed, or failed on a pair, has no cost.
 std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, const strata::PairBlock& pairs,
                                           int passes, Calls calls = Calls::of_blocks);
 
-// The first `count` pairs, taken from the sources in turn. If a source has doubles, all are doubles.
+// The first `count` pairs, taken from the sources in turn. All are doubles if any source has doubles.
 strata::PairBlock first_pairs(std::span<const strata::PairSource> sources, std::size_t count);
 
 // A lane's errors and costs, to compare with other lanes.

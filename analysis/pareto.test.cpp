@@ -81,7 +81,7 @@ TEST(Extremes, AreWhatTheySay) {
   }
 }
 
-// Moller's epsilon fits one scale only. Without it, only overflow and underflow limit the scale.
+// Moller's epsilon fits one scale only; without the epsilon, only overflow and underflow limit the scale.
 TEST(Extremes, FindTheScaleOfAnAbsoluteEpsilon) {
   const auto sources = strata::stratum_sources(4, 4'000, {"uniform"});
   const Lane& zero = *find_lane("moller_1997/f32/cpu");
@@ -102,7 +102,7 @@ TEST(Extremes, FindTheScaleOfAnAbsoluteEpsilon) {
 }
 
 // A range found on some pairs also holds on five times as many fresh pairs: at its ends the lane is as right as at 2^0.
-// At exponents at which it is shown to be less right, it is less right on the fresh pairs too.
+// Where the lane is shown to be less right, it is less right on the fresh pairs too.
 TEST(Extremes, AreTrueOfFreshPairs) {
   const std::vector<std::string> lanes = {"moller_1997/f32/cpu", "interval_overlap/f32/cpu", "separating_axes/f64/cpu"};
   const std::vector<std::string> strata = {"near_edge_edge", "near_vertex_face", "uniform"};

@@ -61,7 +61,7 @@ TEST_P(PolicyOverStratum, WhatABoundDecidesIsTheTruth) {
   EXPECT_TRUE(open || decided > 10'000u) << decided;  // a filter must decide most pairs
 }
 
-// Checks on proper triangles each algorithm's claim to be right_without_rounding.
+// Checks each algorithm's claim to be right_without_rounding, on proper triangles.
 TEST_P(PolicyOverStratum, AlgorithmsAreRightWithoutRoundingWhereTheySaySo) {
   int asked = 0;
   for (const Pair& pair : drawn(GetParam().stratum, 300)) {
@@ -81,7 +81,7 @@ TEST_P(PolicyOverStratum, AlgorithmsAreRightWithoutRoundingWhereTheySaySo) {
 INSTANTIATE_TEST_SUITE_P(Strata, PolicyOverStratum, testing::ValuesIn(strata::kStrata),
                          [](const auto& row) { return std::string(row.param.id); });
 
-// projected_sat does not claim right_without_rounding. This test confirms that the claim would be false.
+// projected_sat does not claim right_without_rounding; this test confirms that such a claim would be false.
 TEST(PolicyLanes, AnAlgorithmThatIsWrongWithoutRoundingIsFound) {
   int wrong = 0;
   for (const Pair& pair : drawn(strata::Stratum::uniform, 300)) {

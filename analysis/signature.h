@@ -64,7 +64,7 @@ Signature signature(const Relation& truth, Nesting nesting, Bucket bucket, std::
 // added: "coplanar_b_in_a".
 std::string key(const Signature& signature);
 
-// The key with margin bucket 0. Signatures that differ only in their margin bucket share it.
+// The key with margin bucket 0: the same for all signatures that differ only in their margin bucket.
 std::string coarse_key(const Signature& signature);
 
 // The inverse of key; nothing if the text is not a key.

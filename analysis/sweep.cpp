@@ -72,7 +72,7 @@ void keep_first(std::optional<PairPlace>& kept, const std::optional<PairPlace>& 
   if (found && (!kept || *found < *kept)) kept = found;
 }
 
-// Counts the bits, and keeps the place of the first bit.
+// Adds the number of set bits to `count`, and keeps the place of the first one.
 void add(std::uint64_t bits, const PairPlace& word, std::uint64_t& count, std::optional<PairPlace>& first) {
   if (bits == 0) return;
   count += static_cast<std::uint64_t>(std::popcount(bits));

@@ -65,7 +65,7 @@ std::uint64_t pairs_in(Sources sources);  // of all sources
 
 bool any_in_doubles(Sources sources);
 
-// The source with each of its pairs, of either type, replaced by change(pair). Only the host can draw it.
+// The source with each of its pairs, of either type, replaced by change(pair). Only the host can draw its pairs.
 template <class Change>
 strata::PairSource changed(strata::PairSource source, const Change& change) {
   const auto drawn = [&](const auto& draw) {

@@ -133,8 +133,8 @@ TEST_P(EveryStratum, ShortcutsToTheBucketAreRightWhereTheyDecide) {
       GetParam().stratum == strata::Stratum::shared_vertex || GetParam().stratum == strata::Stratum::shared_edge;
   EXPECT_TRUE(touching || by_double > 3'000) << by_double;
   EXPECT_TRUE(!GetParam().id.starts_with("near_") || by_single > 5'000) << by_single;
-  // Nothing contracts, so the counts are the same on every host. Smaller counts mean worse estimates and slower code;
-  // no other test would show that.
+  // Nothing is contracted here, so the counts are the same on every host. Smaller counts mean worse estimates and
+  // slower code; no other test would show that.
   EXPECT_EQ((std::array{by_single, by_double, proven}), kDecided[static_cast<int>(GetParam().stratum)]);
   const bool mixed = GetParam().stratum == strata::Stratum::mixed_scale;
   EXPECT_TRUE(mixed ? undecided > 1'000 : undecided < 20) << undecided;
@@ -146,8 +146,8 @@ constexpr std::size_t kOpen[strata::kStrataCount] = {
     0, 91, 1, 1, 1, 3830, 4121, 1, 0, 94, 14811, 1640, 7856, 183, 116, 988, 917, 28142, 7605, 2978, 4572,
 };
 
-// Runs the code for every instruction set of this processor. Without fused multiply-adds it decides no pairs; with
-// them, all instruction sets decide the same pairs.
+// Runs the code for every instruction set of this processor. With an instruction set without fused multiply-adds, the
+// code decides no pairs; with all others it decides the same pairs.
 TEST_P(EveryStratum, BucketsSideBySideAreRightWhereTheyAreSettled) {
   constexpr std::size_t kPairs = 100'003;
   const auto [pairs, truth, declined] = drawn_and_decided(kSeed + 3, GetParam().stratum, kPairs);
@@ -230,7 +230,7 @@ TEST(Lanes, FailInEveryHardStratum) {
 }
 
 // On coordinates in {-1,0,1}, algorithms that neither divide nor take roots do not round. So every error is a logic
-// error, and no error occurs on proper triangles.
+// error; none occurs on proper triangles.
 TEST(Lanes, OnTheLatticeDivisionFreeAlgorithmsFailOnDegeneratePairsOnly) {
   std::uint64_t proper = 0, wrong_on_degenerate = 0;
   for (std::uint64_t index = 0; index < 200'000; ++index) {

@@ -50,13 +50,13 @@ struct TuneSpec {
 
 using Curve = CurveOf<PolicyErrors>;
 
-// How far pairs may grow or shrink before a policy's errors, or only its forbidden errors, double. 0: they do not
-// double within kMostScale. Measured on pairs that were not used to choose the policy.
+// How far pairs may grow or shrink before a policy's errors, or only its forbidden errors, double. `up` or `down` is 0
+// if the errors do not double up to kMostScale. Measured on pairs that were not used to choose the policy.
 struct ScaleBreak {
   int up = 0, down = 0;  // exponents of two
   PolicyErrors here, at_up, at_down;
 };
-// Whether the rate of errors more than doubled, as bounds on both rates prove at 95 % confidence.
+// Whether bounds on both rates, at 95 % confidence, prove that the rate of errors more than doubled.
 inline bool doubles(std::uint64_t before, std::uint64_t after, std::uint64_t pairs) {
   return share_of(after, pairs).low > 2 * share_of(before, pairs).high;
 }

@@ -72,7 +72,7 @@ TEST(Scaled, IsExactOrLeftAlone) {
   EXPECT_LT(changed, 200);
 }
 
-// The bounds of both rates decide. A rate is called low enough only at 95 % confidence.
+// The rate of forbidden errors and that of other errors are called low enough only at 95 % confidence.
 TEST(Tune, BothRatesNeedABound) {
   const auto with = [](std::uint64_t negative, std::uint64_t positive, std::uint64_t pairs) {
     PolicyErrors errors;

@@ -66,9 +66,9 @@ BasicPair<Real> pair_at(const BasicPair<Real>& pair, MovedCoordinates moved, int
 
 // Chooses the two coordinates of one vertex along which verdicts change most. Samples cells near and far, and counts
 // those that differ from the previous cell, in the truth and in each lane. Compares the smaller count of the two
-// directions first, then the sum, then the order of the coordinates. Around zero an ulp is the least number of the
-// coordinate type, and moving by it shows little. So a zero moves only if no other choice changes verdicts in both
-// directions. Requires: finite coordinates; lanes that run here or have a twin.
+// directions first, then the sum, then the order of the coordinates. Around zero, an ulp is the smallest positive
+// number of the coordinate type, and moving by it shows little. So a zero moves only if no other choice changes
+// verdicts in both directions. Requires: finite coordinates; lanes that run here or have a twin.
 MovedCoordinates liveliest_coordinates(const AnyPair& pair, std::span<const Lane* const> lanes);
 
 // CUDA lanes run as twins. Exact lanes are left out, because their verdict is the truth. Foreign code is left out if it

@@ -83,7 +83,7 @@ TEST(Canaries, OfThisCompilerRoundAsWrittenWithoutContraction) {
   const std::string output = run_canaries("c++ -O2 -ffp-contract=off", "");
   for (const CanaryResult& result : judge_canaries(output)) EXPECT_EQ(result.found, "as written") << result.name;
   EXPECT_EQ(measured_rounding(judge_canaries(output)), Rounding::rounded);
-  // The output of a program that was stopped early gives no wrong answer, unless it ends within a number.
+  // If a program is stopped early, its output gives no wrong answer, unless the output ends within a number.
   for (std::size_t length = 0; length + 2 < output.size(); length += 7)
     EXPECT_EQ(measured_rounding(judge_canaries(output.substr(0, output.rfind('\n', length) + 1))), std::nullopt);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages between graze, a subject's supervisor, and the worker in which foreign code runs. The worker may forge
-// anything it sends. So the supervisor copies each message or word once, and checks the copy.
+// anything it sends, so the supervisor copies each message or word once, and checks the copy.
 #pragma once
 
 #include <array>

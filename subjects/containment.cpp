@@ -64,11 +64,11 @@ bool has_terminals() {
   return statfs("/dev/pts", &at) == 0 && at.f_type == DEVPTS_SUPER_MAGIC;
 }
 
-// Makes the mounts below this place invisible in other namespaces.   Returns: false if the place is not a mount point,
-// like "/" in a chroot.
+// Makes the mounts below this place invisible in other namespaces.   Returns: false if the place is not a mount point;
+// in a chroot, for example, "/" is not one.
 bool keep_private(const char* place) { return mount("none", place, nullptr, MS_REC | MS_PRIVATE, nullptr) == 0; }
 
-// In the new namespace: hides later mounts from outside. In a chroot, "/" is not a mount point, but the others are.
+// In the new namespace: hides later mounts from outside. In a chroot, "/" is no mount point, but the other places are.
 bool keep_mounts_private() {
   return keep_private("/") || (keep_private("/proc") && (keep_private("/dev/shm") || errno == ENOENT) &&
                                (!has_terminals() || keep_private("/dev/pts")));
@@ -123,8 +123,8 @@ std::vector<std::string> mount_points(const std::string& type_begins) {
   return found;
 }
 
-// In the new namespace: hides the control groups. Root, or a user who owns some of them, could use them to freeze the
-// supervisor, or to take its memory and processor time.
+// In the new namespace: hides the control groups. Through them, root or a user who owns some could freeze the
+// supervisor, or take its memory and processor time.
 bool hide_control_groups() {
   for (const std::string& place : mount_points("cgroup")) {  // this finds cgroup2 too
     // A mount on top of a shared mount, as in a chroot, would be visible outside.
@@ -157,7 +157,7 @@ bool is_harmless(const fs::path& device) {
 }
 
 // In the new namespace: lets the code open only harmless devices. Mounts each harmless device over itself, then makes
-// /dev a read-only mount without devices. It is read-only because files in /dev would be memory that no limit counts.
+// /dev a read-only mount without devices. /dev is read-only because files in it would be memory that no limit counts.
 void limit_devices() {
   const std::vector<std::string> places = mount_points("");
   // On a shared mount, as in a chroot, these mounts would be visible outside.
@@ -330,8 +330,8 @@ bool is_descendant(pid_t process) {
 
 namespace {
 
-// Kills all descendants except the child `except` and its descendants.   Returns: whether any of them was still
-// running.
+// Kills all descendants except the child `except` and its descendants.   Returns: whether any descendant that it killed
+// was still running.
 bool kill_descendants(pid_t except, void (*tell_alive)()) {
   bool found = false;
   std::set<pid_t> known{getpid()};  // parents are listed before their children
@@ -368,7 +368,7 @@ bool end_children(pid_t except, void (*tell_alive)()) {
     }
     if (!left) return true;
     // A process that has ended counts towards the task limit until it is reaped. So nothing is reaped while any process
-    // still runs; soon the code cannot start more.
+    // still runs, and soon the code cannot start another process.
     const bool running = kill_descendants(except, tell_alive);
     poll(nullptr, 0, 1);
     if (running) continue;
@@ -434,8 +434,8 @@ void append_rules(std::vector<sock_filter>& steps, const Calls& calls, bool syst
 
 }  // namespace
 
-// The code must not make a user namespace. There, it could mount control groups, and file systems in memory, which no
-// limit counts.
+// The code must not make a user namespace, in which it could mount control groups and in-memory file systems. No limit
+// counts such file systems.
 void forbid_calls(bool system_v) {
   constexpr std::uint32_t kMemfdSecret = 447;  // older headers lack SYS_memfd_secret
   std::vector<sock_filter> i386, steps{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, arch))};

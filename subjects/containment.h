@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contains the processes of foreign code, so that none outlives its supervisor. The processes run in their own process
-// namespace if the system allows one. Otherwise the supervisor is their subreaper.
+// namespace if the system allows one; otherwise the supervisor is their subreaper.
 #pragma once
 
 #include <sys/types.h>
@@ -31,15 +31,15 @@ bool is_descendant(pid_t process);
 // Returns: whether no other child is left.
 bool end_children(pid_t except, void (*tell_alive)());
 
-// Permanently forbids some system calls to this process and its descendants. They can no longer change the limits of
-// other processes, such as the supervisor, which runs as the same user. They also cannot allocate memory that no limit
-// counts (memfd_create and similar calls), make namespaces, or run programs in the kernel. system_v: whether they may
-// make System V memory, semaphores and message queues.
+// Permanently prevents this process and its descendants from making some system calls. They can then no longer change
+// the limits of other processes, such as the supervisor, which runs as the same user. They also cannot allocate memory
+// that no limit counts (memfd_create and similar calls), make namespaces, or run programs in the kernel. system_v:
+// whether they may make System V memory, semaphores and message queues.
 void forbid_calls(bool system_v);
 
-// Drops root's capabilities except those for files, users and low ports. The others would bypass the limits: tracing,
-// mounting, raising limits, rebooting, setting the clock, delaying the supervisor, and reaching files through handles
-// or disks.
+// Drops root's capabilities except those for files, users and low ports. The dropped ones would bypass the limits:
+// tracing, mounting, raising limits, rebooting, setting the clock, delaying the supervisor, and reaching files through
+// handles or disks.
 void drop_rights();
 
 }  // namespace graze::subjects

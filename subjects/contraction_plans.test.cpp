@@ -100,7 +100,7 @@ TEST_F(ContractionPlans, OfBuiltInToolchainsAreTheGoldens) {
   skip_without_golden();
 }
 
-// A comment above the code moves lines, but does not change the plan. Other code or operations change it.
+// A comment above the code moves lines, but does not change the plan. Changed code or operations change the plan.
 TEST_F(ContractionPlans, DoNotChangeWithLineNumbers) {
   const auto plan_of = [](const std::string& source, const char* instruction) {
     fs::create_directories(folder);

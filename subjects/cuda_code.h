@@ -18,7 +18,7 @@ namespace graze::subjects {
 // changed since it was built.
 std::shared_ptr<const SealedCopy> twin_of(const cuda::CudaBuild& build);
 
-// The build's code for a device if `on_device` is set, otherwise its twin. `what` is empty if there is no such code.
+// The build's code for a device if `on_device` is set, otherwise its twin. Without such code, Code::what is empty.
 Code code_of(const cuda::CudaBuild& build, const Wanted& wanted, bool on_device,
              std::shared_ptr<const SealedCopy> twin);
 
@@ -29,8 +29,8 @@ struct KernelCosts {
 };
 inline constexpr std::uint32_t kPairsOfKernelCosts = 1u << 20;  // of stratum `uniform`, in device memory
 
-// Measures the times in a separate process, in at most a minute.   Throws: std::runtime_error with the reason if there
-// are no times, such as a missing device; Stopped.
+// Measures the times in a separate process, in at most a minute.   Throws: std::runtime_error with the reason if it
+// cannot measure, for example without a device; Stopped.
 KernelCosts kernel_costs(std::span<const cuda::CudaBuild* const> builds);
 
 }  // namespace graze::subjects

@@ -85,7 +85,7 @@ TEST_F(CudaHost, HasTheLanesOfACppSource) {
   EXPECT_TRUE(has_source_as_built(*cpu));
   EXPECT_FALSE(has_source_as_built(*fused));
 
-  // A record names the host's builds if host lanes ran. An older record names none, and can still be opened.
+  // A record names the host's builds if host lanes ran. Older records name no such builds, but can still be opened.
   EXPECT_FALSE(record({"hd/f32/cuda-fma"})[0].contains("host"));
   Json spec{{"subjects", record({"hd/f32/cpu", "hd/f32/cuda-fma"})}};
   EXPECT_GE(spec["subjects"][0].at("host").at("builds").size(), 1u) << spec;

@@ -188,8 +188,8 @@ class Finder {
     return declared ? std::optional(first) : std::nullopt;
   }
 
-  // The token after the value that starts at token `first`. A macro's value ends with its line, any other at the next ,
-  // ; ) or } outside brackets.   Returns: `first` if there is no short value.
+  // The token after the value that starts at token `first`. A macro's value ends with its line, any other value at the
+  // next , ; ) or } outside brackets.   Returns: `first` if no short value starts there.
   std::size_t end_of_value(std::size_t first) const {
     const bool of_macro = first >= 3 && is(first - 2, "define") && is(first - 3, "#");
     int depth = 0;

@@ -17,9 +17,9 @@ std::string why_no_hip() { return on_path("hipcc").empty() ? "no hipcc (install 
 
 ContractionPlan hip_plan(const fs::path& source, const std::string& function, std::string_view target,
                          const std::vector<std::string>& flags) {
-  // -nogpulib leaves out AMD's own library, which hipcc may lack for the target. Uses of its functions then stay calls,
-  // in which nothing is fused. The last flag turns off dual instructions, which would join operations from two lines
-  // after all other passes.
+  // -nogpulib leaves out AMD's own library, which hipcc may lack for the target. Calls of its functions then remain
+  // calls, into which nothing is fused. The last flag turns off dual instructions, each of which would combine
+  // operations from two lines.
   const Recipe recipe{fmt::format("hipcc -x hip -O3 --offload-arch={} --cuda-device-only -nogpulib -mllvm "
                                   "-amdgpu-enable-vopd=0",
                                   target),

@@ -100,7 +100,7 @@ std::string exported(void* library) {
   }
   std::string names;
   int count = 0;
-  // Linkers place the string table right after the symbol table, so it marks the end.
+  // Linkers place the string table right after the symbol table, so the string table marks the symbol table's end.
   for (const ElfW(Sym)* s = symbols; s && strings && reinterpret_cast<const char*>(s) < strings; ++s) {
     const int type = ELF64_ST_TYPE(s->st_info);
     if (s->st_shndx == SHN_UNDEF || (type != STT_FUNC && type != STT_OBJECT) || s->st_name >= string_bytes) continue;
@@ -195,7 +195,7 @@ graze_subject subject_of_library(const std::string& file, const std::string& nam
   return subject;
 }
 
-// Whether foreign code forked this process from the worker. Then the call returns in both processes.
+// Whether foreign code forked this process from the worker: its call then returns in both processes.
 bool is_copy = false;
 
 signed char answer_of(int said) {
@@ -284,8 +284,8 @@ class Asking {
  private:
   const Number* pair(std::size_t i) const { return static_cast<const Number*>(pairs) + 18 * i; }
 
-  // The initial value of an answer in a block. It differs between the passes, so a pair is unstable if the function
-  // does not write its answer.
+  // The initial value of an answer in a block. The value differs between the passes, so a pair is unstable if the
+  // function does not write its answer.
   static signed char unwritten(bool second) { return second ? kDisjoint : kDeclined; }
 
   // Asks about one pair. If the call changes the floating-point control, the second pass reports a different answer, so

@@ -160,7 +160,7 @@ bool has_namespaces() {
   return inside;
 }
 
-// Whether "/" is a mount point. In a chroot it is not, and the cache cannot be protected (subjects/README.md).
+// Whether "/" is a mount point. If it is not, as in a chroot, the cache cannot be protected (subjects/README.md).
 bool root_is_a_mount_point() {
   std::ifstream in("/proc/self/mountinfo");
   for (std::string line; std::getline(in, line);) {
@@ -759,8 +759,8 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
   }
 }
 
-// If each call forks, each pair leaves one more process. But there must be neither a second worker nor a second process
-// that loads the code and starts workers.
+// If each call forks, each pair leaves one more process. Still, there must be neither a second worker nor a second
+// process that loads the code and starts workers.
 TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
   const std::string includes = "#include <signal.h>\n#include <unistd.h>\n",
                     function = "int intersects(const float a[9], const float b[9]) {\n";
@@ -801,8 +801,8 @@ TEST_F(Hostile, CodeThatStopsItsProcessGroupStopsOnlyItself) {
   }
 }
 
-// A traced process stops at each signal. Here, the process that forks the workers traces one of them. It must not
-// mistake a stop for an end: it would fork another worker too early, and the code would be loaded again.
+// A traced process stops at each signal. Here, the process that forks the workers traces one of them. If it mistook the
+// worker's stop for an end, it would fork another worker too early, and the code would be loaded again.
 TEST_F(Hostile, AWorkerThatIsTracedByItsParentIsAVerdictAndTheCodeStaysLoaded) {
   const fs::path loads = folder / "loads";
   const struct {
@@ -895,7 +895,7 @@ TEST_F(Hostile, ProgramsThatEndAtOnceCrashOnEveryPair) {
   }
 }
 
-// The asking process may be killed at any time. All other processes must end with it.
+// The asking process may be killed at any time, and all other processes must end with it.
 TEST_F(Hostile, NothingOutlivesTheProcessThatAsks) {
   for (const char* name : {"leaves_children_silently", "forks_without_end", "stops_itself"}) {
     for (const bool namespaces : {true, false}) {

@@ -116,7 +116,7 @@ class HostProcess {
 
   const Loaded& loaded() const { return loaded_; }
 
-  // Returns: the answers; nullopt if the supervisor cannot continue. After nullopt, this object must not be used.
+  // Returns: the answers; nullopt if the supervisor cannot continue; then this object must not be used again.
   std::optional<Answers> ask(const Pair* pairs, std::size_t count, bool in_double) {
     if (in_double) {
       std::copy_n(&pairs[0].a[0].x, count * 18, static_cast<double*>(pairs_.at()));
@@ -150,8 +150,8 @@ class HostProcess {
 
 namespace {
 
-// Returns: the code's description of itself. If a program fails when it is asked for one, it is loaded again without
-// being asked.
+// Returns: the code's description of itself. If a program fails when asked for a description, it is loaded again and
+// not asked.
 Loaded loaded_of(const Code& code) {
   if (code.kind == "command") {
     try {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A block function that runs foreign code in separate processes. The code may crash, hang, corrupt memory, lie or
-// attack. Each such failure is a verdict on its pair, and a new process is asked about the next pair. This process
+// attack. Each failure becomes the verdict on its pair, and a new process is asked about the next pair. This process
 // trusts only the supervisor (supervisor.h), and talks to it over a socket that foreign code does not have.
 #pragma once
 
@@ -64,7 +64,7 @@ class ForeignProcesses : public ForeignCode {
   bool decides_doubles() const override { return scalar_ == Scalar::f64; }
 
   // The processor time that the code took for one pass over the pairs of the last call. The code's own process measures
-  // it, without communication. Nothing for a command, or if the code failed on a pair.
+  // this time, without communication. Empty for a command, or if the code failed on a pair.
   std::optional<std::uint64_t> nanoseconds() const;
   // The same code, in new processes that have seen no pair.
   std::unique_ptr<ForeignProcesses> anew() const;

@@ -9,7 +9,7 @@
 
 namespace graze::subjects {
 
-// The function's name in a source that published_source writes. It is a template for float and double.
+// The function's name in a source that published_source writes. This function is a template for float and double.
 inline constexpr char kPublishedFunction[] = "graze_published";
 
 // One lane of each published algorithm, in the order of the lane table.

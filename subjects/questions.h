@@ -11,7 +11,8 @@ namespace graze::subjects {
 // Each pair is asked twice, forward and then backward, so that state left behind by one call shows in another. Answers
 // are accepted only in the order of the question, and only once each. A word that is forged, early, late or for another
 // question changes nothing. A program's answers are not numbered: after one extra line, each later pair would get
-// another pair's answer. So either all answers to a question count, or none. One-pair questions find the failing pair.
+// another pair's answer. So either all its answers to a question count, or none. One-pair questions find the failing
+// pair.
 class Questions {
  public:
   // of_blocks: whether the subject takes blocks of pairs. program: whether a program answers, line by line or block by
@@ -33,7 +34,7 @@ class Questions {
   // - single pairs: the first pair without an answer gets `how`, kCrashed or kTimedOut. If no pair has an answer, the
   //   next question is about the first pair alone, because code that overwrites its answers may have failed later.
   // - a program: all answers to this question are discarded, and the next question has fewer pairs. If no pair of the
-  //   block fails alone afterwards, the failure came from the program's state. Then the pair at which the question
+  //   block fails alone afterwards, the failure came from the program's state, and the pair at which the question
   //   failed gets `how`. A question fails at the first pair without an answer, or at the last pair if the program wrote
   //   extra lines.
   // Requires: !answered(), except for a program.

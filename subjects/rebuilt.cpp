@@ -65,7 +65,7 @@ Code code_of_build(const Lane& lane, const Opened& subject, const Built& built) 
   return code;
 }
 
-// The assembly of the lane's source. Each process compiles it once.   Throws: std::runtime_error; Stopped.
+// The assembly of the lane's source, which each process compiles only once.   Throws: std::runtime_error; Stopped.
 const std::string& assembly_of_lane(const Lane& lane) {
   static std::mutex mutex;
   static std::map<std::string, std::string> known;
@@ -77,7 +77,7 @@ const std::string& assembly_of_lane(const Lane& lane) {
   return text;
 }
 
-// The lane's code with the products of this line rounded.   Throws: std::runtime_error without such a build; Stopped.
+// The lane's code with this line's products rounded.   Throws: std::runtime_error if there is no such build; Stopped.
 std::unique_ptr<ForeignProcesses> with_rounded(const Lane& lane, const FusedLine& line) {
   const Opened& subject = opened_of(lane);
   const auto text = with_rounded_products(assembly_of_lane(lane), subject.file.parent_path(), line);
@@ -102,9 +102,9 @@ std::string source_as_built(const Lane& lane) {
   }
 }
 
-// Whether a source text, or a file that it includes in quotes, uses something that depends on the build. An included
-// file that is not in the folder counts as one that does, except if the source is Graze's own.   read: the files that
-// were searched already.
+// Whether a source text, or a file that it includes in quotes, uses something that depends on the build. True also if
+// an included file is not in its folder or is too large, unless the source is Graze's own.   read: the files that were
+// searched already.
 bool names_build(const std::string& text, const fs::path& folder, bool own, std::set<fs::path>& read) {
   static const std::regex names(
       "__(FMA|AVX|SSE|FAST_MATH|FINITE_MATH|OPTIMIZE|ARM_FEATURE|FLT_EVAL)|FLT_EVAL_METHOD|FP_FAST|"

@@ -38,8 +38,8 @@ TunableSource tunable_source(const Lane& lane, const std::string& name);
 std::unique_ptr<ForeignProcesses> rebuilt(const Lane& lane, const std::string& text, Scalar scalar,
                                           const std::vector<std::string>& more_flags = {});
 
-// The number that replaces an epsilon. Because it is positive, comparisons of 0 with it keep their outcome. It is a
-// normal number in float32.
+// The number that replaces an epsilon. This number is normal in float32. It is positive, so a comparison of 0 with it
+// has the same outcome as with the epsilon.
 inline constexpr double kNegligible = 1e-36;
 struct Change {
   std::vector<Epsilon> negligible = {};  // `value` replaces these numbers
@@ -68,7 +68,7 @@ std::optional<bool> may_have_epsilon(const Lane& lane);
 // The small numbers in a lane's source file. None if the file is missing, changed, or larger than 1 MiB.
 std::vector<Epsilon> small_numbers(const Lane& lane);
 
-// The processes of a changed build, for one user at a time. The destructor hands them back. The last kMostIdle that
+// The processes of a changed build, for one user at a time. HandBack hands them back. The last kMostIdle processes that
 // were handed back wait for the next user; older ones end.
 inline constexpr int kMostIdle = 12;  // enough for all changes of one lane
 struct HandBack {

@@ -64,7 +64,7 @@ int children() {
   return count;
 }
 
-// The source includes a file from its own folder. Its verdicts depend on a small number, doubles and initial values.
+// The source includes a file from its own folder. Verdicts depend on a small number, doubles and initial values.
 TEST_F(Rebuilt, ChangesAreSeenInVerdicts) {
   std::ofstream(folder_ / "src/own.h") << "#define THERE 1\n";
   const Lane& lane = opened_lane("changes",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An in-memory copy of code that nobody can change. With it, Graze loads exactly the bytes that it verified, even if
-// the file changes meanwhile.
+// An in-memory copy of code, which nobody can change. So Graze loads exactly the bytes that it verified, even if the
+// file changes in the meantime.
 #pragma once
 
 #include <string>

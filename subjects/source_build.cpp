@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kCudaHost = "#include <graze/cuda_host.h>\n";
-// Headers that are written below include/ in the cache folder. On the host, a CUDA source includes those in cuda/
+// Headers that are written below include/ in the cache folder. On the host, a CUDA source includes the headers in cuda/
 // instead of the toolkit's.
 constexpr std::pair<std::string_view, std::string_view> kHeaders[] = {
 #include "subjects/headers.inc"
@@ -70,7 +70,7 @@ static int graze_of_f64(const double* a, const double* b) { return FUNCTION((con
 GRAZE_SUBJECT(graze_subject) = {.abi = GRAZE_SUBJECT_ABI, .f32 = graze_f32 ? graze_of_f32 : 0, .f64 = graze_f64 ? graze_of_f64 : 0};
 )";
 
-// The compiled file for HIP. Functions in a C++ source have no decorations, so all of them also become device code.
+// The compiled file for HIP. A C++ source does not mark functions as __device__, so all also become device code.
 constexpr std::string_view kHip = R"(#include <hip/hip_runtime.h>
 #ifdef GRAZE_SAYS_WHERE
 #include SOURCE
@@ -144,7 +144,7 @@ bool may_include_by_assembler(std::string preprocessed) {
   return preprocessed.find("incbin") != preprocessed.npos || preprocessed.find(".include") != preprocessed.npos;
 }
 
-// Whether the assembler can list the files that it reads. GNU's assembler can; clang's cannot. With -flto, code is
+// Whether the assembler can list the files that it reads: GNU's assembler can, clang's cannot. With -flto, code is
 // assembled at link time, without a list.
 bool assembler_lists_files(const std::string& compiler, const std::vector<std::string>& flags, const Scratch& scratch) {
   if (std::any_of(flags.begin(), flags.end(), [](const std::string& flag) { return flag.starts_with("-flto"); }))
@@ -250,7 +250,7 @@ namespace {
 bool is_c(const fs::path& source) { return source.extension() == ".c"; }
 bool is_cuda(const fs::path& source) { return source.extension() == ".cu"; }
 
-// The flag for our CUDA headers. It precedes the user's flags, which may name the toolkit's headers.
+// The flag for our CUDA headers. This flag precedes the user's flags, which may name the toolkit's headers.
 std::string headers_for(const fs::path& source) {
   return is_cuda(source) ? " -I" + shell_word((cache_folder() / "include/cuda").string()) : "";
 }
@@ -389,8 +389,8 @@ Built build_source(const fs::path& source, const std::string& function, const Re
     reading.states = states_of_listed((fs::exists(included) ? listed_files(included, folder) : "") + assembled);
     return reading;
   };
-  // The compiler reads the files again when it compiles. If they were the same before and after, it compiled the code
-  // that was hashed.
+  // The compiler reads the files again when it compiles. If the files were the same before and after, the compiler
+  // compiled the code that was hashed.
   for (int builds = 0; builds < kMostBuilds; ++builds) {
     const Reading before = read();
     Built built{folder / fmt::format("{:016x}{}", before.hash, recipe.is_program ? kProgram : kObject),

@@ -249,8 +249,8 @@ void add_host_lanes(Entry& entry, std::vector<Lane>& made) {
   if (!built.empty()) o.made["host"] = how_built(o, built);
 }
 
-// Adds the lanes of a CUDA source, which run on the device or as twins. If a lane can do neither, its evidence is the
-// reason.
+// Adds the lanes of a CUDA source, which run on the device or as twins. If a lane can run in neither way, its evidence
+// is the reason.
 void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   const Opened& o = entry.opened;
   std::vector<Lane> made;

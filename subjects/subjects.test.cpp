@@ -226,8 +226,8 @@ TEST_F(Subjects, DescriptionsAndBlocksAndExceptions) {
   expect(throws, Verdict::crashed);
   ForeignProcesses in_blocks({"library", (folder / "libdescribed.so").string(), "in_blocks"}, Scalar::f32);
   expect(in_blocks, Verdict::crashed);
-  // This subject's answers depend on the place in a block. In the second pass, all pairs but the first three have other
-  // places.
+  // This subject's answers depend on the position in a block. In the second pass, all pairs but the first three are at
+  // other positions.
   ForeignProcesses by_place({"library", (folder / "libdescribed.so").string(), "by_place_in_block"}, Scalar::f32);
   const std::vector<Verdict> placed = verdicts(by_place);
   std::size_t wrong = 0, unstable = 0;
@@ -291,7 +291,7 @@ for number, line in enumerate(sys.stdin, 1):
   pairs = all;
 }
 
-// A program may describe itself when Graze asks. If it does not know the question, it runs without a description.
+// A program may describe itself when Graze asks. A program that does not know the question runs without a description.
 TEST_F(Subjects, AProgramMayDescribeItself) {
   const std::string answers = "; while read line; do echo 1; done";
   const auto open_program = [&](const std::string& name, const std::string& describes) {
@@ -896,7 +896,7 @@ TEST_F(Subjects, AProgramThatThePathFindsEarlierMeanwhileIsRefused) {
   setenv("PATH", path.c_str(), 1);
 }
 
-// The hash covers the description. Otherwise, shards of two versions of a library would merge.
+// The hash covers the description, because otherwise shards of two versions of a library would merge.
 TEST_F(Subjects, TheHashOfALibraryIsOfWhatItSaysOfItselfToo) {
   const fs::path code = write("versions.cpp", std::string(R"(
 #include <graze/subject.h>

@@ -43,7 +43,7 @@ Time after(double seconds) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-// Tells graze, at most a hundred times a second, that this supervisor is alive. Graze gives up on a silent one.
+// Tells graze, at most a hundred times a second, that this supervisor is alive. Graze gives up on silent supervisors.
 void tell_alive() {
   static Time next{};
   const Time now = Clock::now();
@@ -85,7 +85,7 @@ class Supervisor {
     _exit(0);
   }
 
-  // Calls poll. If that fails, this supervisor cannot do its work: it exits, and graze starts another.
+  // Calls poll. If poll fails, this supervisor cannot do its work: it exits, and graze starts another.
   int wait_for(pollfd* of, nfds_t count, int milliseconds) {
     const int found = poll(of, count, milliseconds);
     if (found < 0 && errno != EINTR) leave();
@@ -98,7 +98,7 @@ class Supervisor {
     wait_for(of, count, static_cast<int>(std::max<long>(0, left)));
   }
 
-  // Waits for graze's next block, and meanwhile checks the processes' usage.   Returns: false if there is none.
+  // Waits for graze's next block, and meanwhile checks the processes' usage.   Returns: false if no block comes.
   bool next_block(Block& block) {
     for (;;) {
       pollfd control{kControlFd, POLLIN, 0};
@@ -142,7 +142,7 @@ class Supervisor {
     if (send(kControlFd, &answers, sizeof answers, MSG_NOSIGNAL) != sizeof answers) leave();
   }
 
-  // Waits for the worker's answers.   Returns: kDeclined if all are there; else kCrashed or kTimedOut.
+  // Waits for the worker's answers.   Returns: kDeclined if all answers are there; else kCrashed or kTimedOut.
   signed char watch(Questions& questions) {
     double before = processor_seconds(worker_);
     int times = 0;
@@ -179,7 +179,7 @@ class Supervisor {
     }
   }
 
-  // Waits for an event until `until` at most.   Returns: whether the worker claims that it has answered.
+  // Waits for an event, but at most until `until`.   Returns: whether the worker claims that it has answered.
   bool wait(Time until) {
     pollfd news[] = {{talk_, POLLIN, 0}, {worker_fd_, POLLIN, 0}, {kControlFd, POLLIN, 0}};
     wait_for(news, 3, until);
@@ -267,7 +267,7 @@ class Supervisor {
   }
 
   // Waits for a message from the loader or its workers.   Returns: false if the loader ended or stopped, the time is
-  // up, or a limit is exceeded. Unless the loader ended, why_ then has the reason.
+  // up, or a limit is exceeded. If it returns false, why_ has the reason, unless the loader ended.
   bool wait_for_message(Time until) {
     while (Clock::now() < until) {
       pollfd news[] = {{talk_, POLLIN, 0}, {loader_fd_, POLLIN, 0}, {kControlFd, POLLRDHUP, 0}};

@@ -16,7 +16,7 @@ struct Limits {
   bool system_v = false;    // System V memory, semaphores and message queues have limits, so the code may make them
 };
 
-// Answers blocks on kControlFd until graze closes that socket. Then ends all processes that it started, and exits.
+// Answers blocks on kControlFd until graze closes that socket, then ends all processes that it started, and exits.
 // arguments: the command line of the process that loads the code, which runs this program too.
 int supervise(const Limits& limits, char* const* arguments);
 

@@ -210,8 +210,7 @@ TEST_F(Toolchains, TheirRunnerIsRecorded) {
   EXPECT_NE(recorded().at("runner"), before["runner"]);
 }
 
-// Foreign code in a toolchain's program fails only on its bad pairs, and what it prints itself is not taken for an
-// answer.
+// Foreign code in a toolchain's program fails only on its bad pairs, and its own output is not taken for an answer.
 TEST_F(Toolchains, ProgramsThatFailLoseOnlyTheirPair) {
   Wanted wanted = parse_subject("fails=" + write("fails.cpp", R"(
 #include <cstdio>

@@ -69,8 +69,8 @@ fs::path memory_folder(pid_t process) {
   return folder;
 }
 
-// Memory that several processes can map, such as MAP_SHARED | MAP_ANONYMOUS: bytes by inode. All of it stays allocated
-// while any part is mapped, even if no page table shows it.
+// Memory that several processes can map, such as MAP_SHARED | MAP_ANONYMOUS: bytes by inode. All memory of an inode
+// stays allocated while any part is mapped, even if no page table shows it.
 using Shared = std::map<std::uint64_t, std::uint64_t>;
 
 // The device number of the file system that holds shared memory, including files of memfd_create.
@@ -94,7 +94,7 @@ std::uint64_t add_shared(std::ifstream& maps, const fs::path& folder, Shared& sh
                     &inode) != 7 ||
         flags[3] != 's' || makedev(of_major, of_minor) != device)
       continue;
-    // Only root may ask for the bytes in use. For other users, all bytes up to the end of the mapping count.
+    // Only root may ask for the bytes in use. If another user runs Graze, all bytes up to the end of the mapping count.
     struct stat file {};
     char name[64];
     std::snprintf(name, sizeof name, "map_files/%lx-%lx", from, to);
@@ -109,7 +109,7 @@ std::uint64_t add_shared(std::ifstream& maps, const fs::path& folder, Shared& sh
 }
 
 // A process's memory, with page tables but without shared memory. Counts files' pages fully, which is fast. If the sum
-// exceeds `most`, counts only the process's share of each such page.
+// exceeds `most`, counts only the process's share of each page.
 std::uint64_t bytes_of(const fs::path& folder, std::uint64_t most) {
   const std::uint64_t whole = bytes_in(folder / "status", {"RssAnon:", "RssFile:", "VmSwap:", "VmPTE:"});
   if (whole <= most) return whole;
@@ -117,7 +117,7 @@ std::uint64_t bytes_of(const fs::path& folder, std::uint64_t most) {
          bytes_in(folder / "status", {"VmPTE:"});
 }
 
-// The number of descriptors in a folder of /proc. If a process hides them, assumes the limit.
+// The number of descriptors in a folder of /proc. If the process hides the folder, assumes the limit.
 std::uint64_t descriptors_in(const fs::path& folder) {
   std::error_code error;
   std::uint64_t count = 0;
@@ -169,7 +169,7 @@ Usage usage_of_descendants(const Usage& most) {
       usage.bytes += bytes_in(folder / "status", {"VmSize:", "VmSwap:", "VmPTE:"});
     } else {
       usage.bytes += add_shared(maps, folder, shared);
-      // Counts only shares of files' pages if full pages would take more than half of the remaining limit.
+      // Counts only shares of files' pages if whole pages would take more than half of the remaining limit.
       usage.bytes += bytes_of(folder, most.bytes > usage.bytes ? (most.bytes - usage.bytes) / 2 : 0);
     }
   }

@@ -43,7 +43,7 @@ inline float truncating_mad(float a, float b, float c) {
   return std::fma(std::ldexp(mantissa, exponent / 2), std::ldexp(1.0f, exponent - exponent / 2), c);
 }
 
-// Moves x by -2 to 2 ulps. A hash of x selects how many.
+// Moves x by -2 to 2 ulps; a hash of x selects the number.
 inline float off_by_ulps(float x) {
   const auto bits = std::bit_cast<std::uint32_t>(x);
   return std::isnormal(x) ? std::bit_cast<float>(bits + (bits * 0x9e3779b9u >> 16) % 5 - 2) : x;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the arithmetic of devices in 2012 with exact arithmetic. With no peculiarity set, it must equal float's.
+// Compares the arithmetic of devices in 2012 with exact arithmetic. A device without peculiarities must match float.
 #include "subjects/examples/device_2012.h"
 
 #include <gtest/gtest.h>

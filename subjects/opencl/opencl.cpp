@@ -39,8 +39,8 @@ bool find(void* library, const char* name, Function& function) {
 }
 
 // Loads the library, sets `cl`, and returns the platforms. A driver loader exports all functions. A driver exports only
-// one, which finds the function that returns the platforms. A driver's platform begins with the address of its function
-// table.   Throws: Failure if there is no library or no platform.
+// one function, which finds the function that returns the platforms. A driver's platform begins with the address of its
+// function table.   Throws: Failure if there is no library or no platform.
 std::vector<cl_platform_id> load_platforms() {
   static cl_icd_dispatch table{};
   const std::string name = library_name();

@@ -19,7 +19,7 @@ struct Failure : std::runtime_error {
   int status;
 };
 
-// The functions of OpenCL 1.2, once all_devices or chosen_device has loaded them. Those of later versions may be null.
+// The functions of OpenCL 1.2, once all_devices or chosen_device has loaded them. Later functions may be null.
 extern const cl_icd_dispatch* cl;
 
 // Throws: Failure that names the call and the error, unless the error is CL_SUCCESS.

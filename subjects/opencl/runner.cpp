@@ -14,8 +14,8 @@
 //   fast     -cl-fast-relaxed-math
 // In all modes but `fast`, division and square root are rounded correctly if the device can do so. The device decides
 // how to treat subnormal numbers.
-// PLATFORM is a part of a platform's name. Without it, the program uses the first platform with a GPU, else the first
-// with any device.
+// PLATFORM is a part of a platform's name. Without PLATFORM, the program uses the first platform with a GPU, else the
+// first with any device.
 // The environment variable GRAZE_OPENCL names the library to load: a driver loader, or a driver such as
 // libnvidia-opencl.so.1. The default is libOpenCL.so.1.
 // Exit status: 1 a call failed; 2 wrong use; 3 no library, or no device; 4 the source does not compile.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// FCL's separating axis test for two triangles. The library has it for double; this file instantiates it for float.
+// FCL's separating axis test for two triangles. FCL instantiates it for double; this file instantiates it for float.
 #include <fcl/config.h>
 #include <fcl/narrowphase/detail/traversal/collision/intersect.h>
 #include <graze/subject.h>

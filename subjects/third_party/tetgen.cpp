@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// TetGen's test for two triangles, with Shewchuk's exact predicates. It throws an int in cases that it does not handle.
+// TetGen's test for two triangles, with Shewchuk's exact predicates. Throws an int in cases that it does not handle.
 #define TETLIBRARY
 #include <graze/subject.h>
 #include <tetgen.h>

@@ -147,7 +147,7 @@ std::optional<FusedOperation> on_amd(std::string_view name) {
   return FusedOperation{Fused::madd, numbers(name.starts_with("f64"), false), times};
 }
 
-// A division on AMD's GPUs takes five fused operations that are not contractions. The last one is v_div_fmas_f32.
+// A division on AMD's GPUs takes five fused operations that are not contractions; the last of them is v_div_fmas_f32.
 constexpr int kFusedInDivision = 5;
 std::optional<std::string> division_on_amd(std::string_view name) {
   if (!take(name, "v_div_fmas_")) return std::nullopt;
@@ -170,7 +170,7 @@ int number_of(std::string_view& text) {
   return error == std::errc() ? number : -1;
 }
 
-// The next text in quotes; nothing if there is none. A backslash precedes each quote and backslash in it.
+// The next text in quotes, with a backslash before each quote and backslash; nothing if there is none.
 std::optional<std::string> quoted(std::string_view& text) {
   text = trimmed(text);
   if (!take(text, "\"")) return std::nullopt;
@@ -210,8 +210,8 @@ void for_each_line(std::string_view assembly, const fs::path& folder, Visit visi
   }
 }
 
-// The code for a fused x86-64 operation with its product rounded, in AT&T syntax: vfmadd213ss op3, op2, op1. It uses
-// two other registers, and saves their values below the red zone.
+// The code for a fused x86-64 operation with its product rounded, in AT&T syntax: vfmadd213ss op3, op2, op1. The code
+// uses two other registers, whose values it saves below the red zone.
 std::optional<std::string> rounded_on_x86(const Instruction& i, Fused fused) {
   if (i.operands.size() != 3) return std::nullopt;
   const std::string &op3 = i.operands[0], &op2 = i.operands[1], &op1 = i.operands[2];
@@ -253,8 +253,8 @@ int register_of(std::string_view operand) {
   return number_of(operand);
 }
 
-// The code for a fused ARM64 operation with its product rounded. It uses another register, and saves its value on the
-// stack.
+// The code for a fused ARM64 operation with its product rounded. The code uses another register, whose value it saves
+// on the stack.
 std::optional<std::string> rounded_on_arm64(const Instruction& i, Fused fused) {
   const std::string& to = i.operands[0];
   const bool accumulates = i.operands.size() == 3;

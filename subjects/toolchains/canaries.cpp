@@ -59,12 +59,12 @@ std::vector<Canary> canaries() {
              most = std::ldexp(Real{1}, std::numeric_limits<Real>::max_exponent - 1);
   const Real denormal = std::numeric_limits<Real>::denorm_min();
   const Real large = std::ldexp(Real{1}, digits == 24 ? 100 : 1000);
-  // In the canary `fma`, the product a*b is low + u. It lies halfway between low and low + 2u, and the last digit of
-  // low is 0.
+  // In the canary `fma`, the product a*b is low + u, which lies halfway between low and low + 2u. The last digit of low
+  // is 0.
   const Real low = 1 + std::ldexp(Real{1}, -(digits / 2)) + std::ldexp(Real{1}, -(digits - digits / 2));
   // The exact product a*b is 1 - hh, so a*b - 1 is -hh unless the product is rounded.
   const std::vector<Other> not_rounded = {{contracted, "fused", all({-hh})}};
-  // A sequential sum loses the 15 terms between 2^100 and -2^100, and is 47. Partial sums keep some of them.
+  // A sequential sum loses the 15 terms between 2^100 and -2^100, and is 47. Sums in parts keep some of these.
   std::vector<Other> regrouped;
   for (int kept = 48; kept <= 62; ++kept) regrouped.push_back({fast, "regrouped", all({static_cast<Real>(kept)})});
   regrouped.push_back({fast, "regrouped", all({0})});
@@ -79,7 +79,7 @@ std::vector<Canary> canaries() {
        {{contracted, "left fused", all({-hh})},
         {contracted, "right fused", all({4 * hh})},
         {excess, "excess digits", all({3 * hh})}}},
-      // The same products are the first two terms of the dot product, and then the last two.
+      // The dot product's first two terms are the products of `difference`; in the second result, its last two are.
       {"dot",
        "dot product of 3",
        contracted,
@@ -122,7 +122,7 @@ std::vector<Canary> canaries() {
        all({1, 0, 0}),
        {{fast, "regrouped", all({0, 1, 0})}, {fast, "regrouped", all({0, 0, 1})}}},
       {"order_in_loop", "order of sum += a[i]", fast, false, all({47}), regrouped},
-      // The sums 1 + u and 1 + 3u lie halfway between two numbers. 1 + u (1 + 2u) lies just above halfway.
+      // The sums 1 + u and 1 + 3u lie halfway between neighbouring numbers. 1 + u (1 + 2u) lies just above halfway.
       {"nearest",
        "a + b",
        excess,
@@ -133,7 +133,7 @@ std::vector<Canary> canaries() {
       {"range_assigned", "t = a*b; t / c", excess, true, all({infinity}), {{excess, "excess range", all({large})}}},
       {"range_called", "(*times)(a, b) / c", excess, true, all({infinity}), {{excess, "excess range", all({large})}}},
       {"range_stored", "a*b stored; a*b / c", fast, false, all({infinity}), {{excess, "excess range", all({large})}}},
-      // The divisor is 41 for float and 49 for double. Its rounded reciprocal, times the divisor, rounds to 1 - u.
+      // The divisor d is 41 for float and 49 for double. The product of d and its rounded reciprocal rounds to 1 - u.
       {"reciprocal",
        "a/d, b/d, c/d",
        fast,
@@ -142,9 +142,9 @@ std::vector<Canary> canaries() {
        {{fast, "times 1/d", all({1 - u, 1 - u, 1 - u, 1 - u}), true}}},
       {"division", "a / b, hard cases", excess, false, {0, kQuotients}},
       {"root", "sqrt(a), hard cases", excess, false, {0, kRoots}},
-      // The results in order: (1 - hh) - 1; the product low + u rounded to even, up, down, and with 2u added, to even;
-      // u (1 - 4uu) added to 1 + 2u; a product beyond the range; a little more than half of the least subnormal number,
-      // added to twice that number; zeros.
+      // The results in order: (1 - hh) - 1; low + u rounded to even, up, and down; low + 3u rounded to even; u (1 -
+      // 4uu) added to 1 + 2u; a product beyond the range; a little more than half of the least subnormal number, added
+      // to twice that number; zeros.
       {"fma", "fma(a, b, c)", fast, false,
        all({-hh, low, low + 2 * u, low, low + 4 * u, 1 + 2 * u, most, 3 * denormal, 0, -Real{0}})},
       {"identities",

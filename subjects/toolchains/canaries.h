@@ -27,8 +27,8 @@ struct CanaryResult {
 // twice, or does not have the expected number of results.
 std::vector<CanaryResult> judge_canaries(std::string_view output);
 
-// The strictest rounding that explains all canaries; nothing if one has no answer. Omits fma(), which is a library
-// function.
+// The strictest rounding that explains all canaries; nothing if one has no answer. Ignores the canary `fma`, because
+// fma() is a library function.
 std::optional<Rounding> measured_rounding(const std::vector<CanaryResult>& results);
 
 // Whether a result is as documented. no_claim: the documentation permits several results.

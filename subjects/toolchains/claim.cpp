@@ -93,7 +93,7 @@ std::optional<Claim> documented_claim(std::string_view command, std::string_view
         Rounding::fast, true,
         fmt::format("{}{}", fmt::join(flags.fast, " "), off ? ", without contraction (-ffp-contract=off)" : ""), !off};
   }
-  // 0 and 16: operations on float and double have the precision of their type. The two differ only for _Float16.
+  // With 0 and 16, operations on float and double have their type's precision. 0 and 16 differ only for _Float16.
   const std::string method = value_of("__FLT_EVAL_METHOD__");
   if (!method.empty() && method != "0" && method != "16") {
     // Annex F of C removes excess precision when a value is assigned or returned.

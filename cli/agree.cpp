@@ -39,7 +39,7 @@ int agree(const TuneOptions& options) {
   for (const Lane* lane : {&first, &second}) {
     expect_on_host(*lane);
     if (!backends::on_host(lane_under(*lane, "abs:1")))
-      throw UsageError("this build has no twin of " + lane->id + " under tolerances; scripts/setup builds them");
+      throw UsageError("this build has no twin of " + lane->id + " with tolerances; scripts/setup builds such twins");
     if (!backends::on_host(lane_under(*lane, "rel:1"))) question.without_relative = lane->id;
   }
   analysis::AgreeSpec spec;

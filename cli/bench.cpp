@@ -96,7 +96,7 @@ std::string table_of(const Bench& bench, std::size_t group) {
   return table.text(output_screen());
 }
 
-// Describes the speed of the exact lane as shares of the device's limits.
+// Describes the exact lane's speed as a percentage of each of the device's limits.
 std::string shares(const Bench& bench) {
   std::string text;
   for (const auto& [lane, size] : {std::pair(kExact, 36), {kExactInDoubles, 72}}) {
@@ -188,8 +188,8 @@ void bench(const Options& options, int& status) {
   if (std::any_of(lanes.under_test.lanes.begin(), lanes.under_test.lanes.end(),
                   [](const Lane* lane) { return lane->foreign; }))
     print_wrapped(
-        {"Times of your own code include the exchange with its process, which decides each pair twice; `graze pareto` "
-         "times only the code, for host lanes."});
+        {"Times of your own code include the exchange with its process, which decides each pair twice; for host lanes, "
+         "`graze pareto` times only the code."});
   if (!result.machine.devices.empty() && !options.sizes.empty()) {
     fmt::print("crossover: {}\n", result.crossover == 0
                                       ? "none; with copies included, all cores are faster"
@@ -213,12 +213,12 @@ void add_bench(CLI::App& app, int& status) {
       ->option_text("N,…");
   command
       ->add_option("--mesh", options->mesh,
-                   "Mesh to test as well: every triangle against the middle triangle of the file")
+                   "Mesh to test as well: all its triangles against the one in the middle of the file")
       ->option_text("FILE");
   command
       ->add_option("--between", options->between,
-                   "Two meshes to test against each other, with the exact test and with CGAL's do_intersect; without "
-                   "--triangles nothing else is timed")
+                   "Two meshes to test against each other, with the exact test and with CGAL's do_intersect; nothing "
+                   "else is timed unless --triangles is given")
       ->expected(2)
       ->option_text("MESH MESH");
   add_globs(*command, "--lanes", options->lanes.globs,
@@ -234,8 +234,8 @@ void add_bench(CLI::App& app, int& status) {
       for (const char* option : {"--lanes", "--subject", "--toolchains", "--plot"}) {
         if (command->count(option) > 0)
           throw UsageError(fmt::format(
-              "{} applies only to arrays of triangles, and --between alone times none; add --triangles, or omit this "
-              "option",
+              "{} applies only to arrays of triangles, but --between without --triangles times no arrays; add "
+              "--triangles, or omit this option",
               option));
       }
       options->sizes.clear();

@@ -38,7 +38,7 @@ bool is_foreign(const std::string& id) {
   return lane && lane->foreign;
 }
 
-// Whether the lane is a CUDA lane of a published algorithm. A user's CUDA lane runs in its own process instead.
+// Whether this is a published algorithm's CUDA lane. A user's CUDA lane does not count: it runs in its own process.
 bool is_cuda(const std::string& lane) { return lane.find("/cuda") != lane.npos && !is_foreign(lane); }
 
 struct Array {

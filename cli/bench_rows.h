@@ -53,7 +53,7 @@ struct BenchMachine {
 struct Bench {
   BenchMachine machine;
   std::vector<BenchRow> rows;
-  // Measured array size at and above which one GPU, including copies, is always faster than all cores; 0: none.
+  // The smallest measured array size from which on one GPU, even with copies, is always faster than all cores; 0: none.
   std::uint64_t crossover = 0;
   std::map<std::string, std::uint64_t> not_timed_above;  // by lane: the size of the largest array on which it is timed
 };

@@ -9,9 +9,9 @@
 
 namespace graze::cli {
 
-// Draws the ulp maps of the file's first case for the subject's lanes under test, along
-// analysis::liveliest_coordinates, unless current maps exist and `again` is false.
-// Returns: whether this call made the maps.   Throws: OracleMismatch, std::runtime_error.
+// Draws ulp maps of the file's first case, along analysis::liveliest_coordinates, for those lanes under test that
+// belong to the subject. Does nothing if current maps exist, unless `again` is true.   Returns: whether this call drew
+// maps.   Throws: OracleMismatch, std::runtime_error.
 bool map_case(const fuzz::SelectedLanes& under_test, const std::filesystem::path& case_file, const std::string& subject,
               bool again);
 

@@ -133,7 +133,7 @@ std::string written_note(const corpus::Entry& entry, const oracle::Truth& truth)
   for (std::size_t i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = std::strtod(entry.written[i].c_str(), nullptr);
   const oracle::Truth in_doubles = is_finite(pair) ? oracle::truth(pair) : *written;
   const bool double_differs = !alike(*written, in_doubles);
-  // Says "as doubles and as stored in float32" only if the words are true for both roundings.
+  // The note uses "as doubles and as stored in float32" only if it is true for both roundings.
   const bool float_differs = !alike(in_doubles, truth) || (double_differs && words(in_doubles) != words(truth));
   if (!double_differs && !float_differs) return "";
   std::string text = "as written: " + words(*written);

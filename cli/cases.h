@@ -15,7 +15,7 @@
 
 namespace graze::cli {
 
-// Returns: at least one case. A stratum's pair has the fields stratum, seed and index.
+// Returns: at least one case. If a pair was drawn from a stratum, its entry has the fields stratum, seed and index.
 // Throws: UsageError for an invalid name, FormatError for a file that is missing or not in the format,
 // std::runtime_error for a file without a case; what expect_exact_input throws if the input must be exact.
 std::vector<corpus::Entry> read_cases(const std::string& name, bool exact_input = false);
@@ -34,8 +34,8 @@ oracle::Truth truth_of(const corpus::Entry& entry);
 // if rounding to double or to float32 changes the truth; otherwise empty. truth: the entry's truth.
 std::string written_note(const corpus::Entry& entry, const oracle::Truth& truth);
 
-// The verdicts that the entry's campaign stored for foreign-code lanes that cannot run now. Empty unless the entry has
-// a signature of their subject.
+// The verdicts that the entry's campaign stored for lanes of foreign code that cannot run now. Empty unless the entry's
+// signature is one of that code.
 std::vector<std::pair<std::string, Verdict>> stored_verdicts_of(const corpus::Entry& entry,
                                                                 const std::vector<fuzz::LaneLeftOut>& left_out,
                                                                 Verdict truth);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plants twelve bugs in a user's triangle test. A short campaign must find each and name its cause.
+// Plants twelve bugs in a user's triangle test. A short campaign must find each bug and name its cause.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -209,7 +209,8 @@ TEST_F(TwoExperiments, AnEpsilonAndRoundingTogetherAreNamed) {
   }
 }
 
-// This limit grows with the distance from the origin: the verdict is right on some images, but doubles do not help.
+// This limit grows with the distance from the origin: the verdict is right on some images of the pair, but computing in
+// doubles does not help.
 TEST_F(TwoExperiments, WhatIsWrongInDoublesTooIsNotCalledRounding) {
   const std::string found = explained("n - m, l - k", "s / 16", "3 0 0 2 0 0 3 1 0  3.1240234375 0 0 4 0 0 4 1 0");
   EXPECT_TRUE(found.starts_with("logic: ")) << found;

@@ -142,7 +142,7 @@ TEST_F(Cli, TwoAtOnceInOneFolderAreRefused) {
   expect_done("graze minimize c > /dev/null && " + fuzz);
 }
 
-// A run whose folder was removed or moved does not touch the campaign that is there now.
+// If a run's folder is removed or replaced, the run does not touch the campaign that is now in its place.
 TEST_F(Cli, AFolderReplacedDuringARunIsLeftAlone) {
   expect_done("echo 'while read l; do until [ $l = describe ] || [ -e go ]; do sleep 0.05; done; echo 1; done' > w.sh");
   expect_done("graze fuzz --pairs 600 --strata lattice --lanes '*/f32/cpu' --out other > /dev/null");

@@ -80,8 +80,8 @@ void open_subjects_of(const std::filesystem::path& name, bool resubject = false)
 std::vector<std::pair<std::string, std::string>> open_unchanged_subjects(const fuzz::Json& spec,
                                                                          bool resubject = false);
 
-// Opens the subjects, including those recorded for `about`, then selects the lanes. Reports on standard error which
-// requested lanes do not run here, and why. This includes lanes whose recorded code has changed.
+// Opens the subjects, including those recorded for the campaign or case file `about`, then selects the lanes. Reports
+// on standard error which requested lanes do not run here, and why; one reason is that recorded code has changed.
 // Throws: what subjects::open, fuzz::select_lanes and fuzz::expect_each_runs throw.
 fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesystem::path& about = {},
                                    bool require_device = false);
@@ -165,8 +165,8 @@ void write_scene_of(const std::string& mesh, const std::string& out, std::option
 // drawn() throws.
 void print_sufficient(const std::string& scene, double rate);
 
-// Draws from the scene, or from the strata if there is none. For a scene, sets `recorded` to the "scene" of the verb's
-// results.   Throws: what fuzz::open_scene, strata::scene_sources and strata::stratum_sources throw.
+// Draws from the scene, or from the strata if there is none. For a scene, sets `recorded` to the value of "scene" in
+// the verb's results.   Throws: what fuzz::open_scene, strata::scene_sources and strata::stratum_sources throw.
 strata::SceneSources drawn(const DrawOptions& options, fuzz::Json* recorded = nullptr);
 
 // Lists the strata that the scene cannot contain, with the reasons, below a heading; empty for none.
@@ -208,7 +208,7 @@ std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const AnyPair
 // Whether any verdict is wrong. No verdict is wrong if the truth is declined.
 bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth);
 
-// Returns, in one line, where the verdicts of the CUDA lanes under test come from. Empty if there are no such lanes.
+// Returns, in one line, where the verdicts of the CUDA lanes under test come from; empty if there are no CUDA lanes.
 std::string cuda_evidence(const fuzz::SelectedLanes& under_test);
 
 }  // namespace graze::cli

@@ -18,8 +18,8 @@ class Compare : public CommandTest {
   }
   nlohmann::json json(const std::string& file) { return shell.json(file); }
 
-  // Compares the campaigns `before` and `after`, and checks each row's counts against `graze discrepancy` on the same
-  // pairs. That verb gets the builds that the two campaigns ran, as two libraries.
+  // Compares the campaigns `before` and `after`, and checks each row's counts against those that `graze discrepancy`
+  // finds on the same pairs with the two libraries that the campaigns ran.
   // build_of_lane: index into the builds cpu, cpu-fma and cpu-fast.
   void expect_counts(const std::string& strata, int pairs, std::size_t build_of_lane = 0) {
     const Ran said = shell.done("export XDG_CACHE_HOME=$PWD/cache; graze report --compare before after");
@@ -166,7 +166,7 @@ TEST_F(Compare, AnotherSeedIsNoChangeAndTheBlindSpotIsSaid) {
   }
 }
 
-// For each kind of campaign, the command in the report runs unchanged and gives the same bytes.
+// For each kind of campaign, the command in the report runs unchanged and writes the same summary.json.
 TEST_F(Compare, TheCommandInTheReportRunsAsItStands) {
   expect_done(
       "printf 'OFF\\n4 4 0\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n3 0 1 2\\n3 0 1 3\\n3 0 2 3\\n3 1 2 3\\n' > 'a mesh.off'; "

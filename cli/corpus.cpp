@@ -144,8 +144,8 @@ void list(const CorpusOptions& options) {
   print_next(options, "verify");
 }
 
-// Returns lines such as "Not run: mine. …". They name what has recorded verdicts but did not run: subjects that need
-// --subject, and lanes of published algorithms that this build does not have.
+// Returns lines such as "Not run: mine. …", which name the subjects and lanes that have recorded verdicts but did not
+// run: subjects that need --subject, and lanes of published algorithms that this build does not have.
 std::string not_run(const fuzz::RegressionCorpus& corpus) {
   std::set<std::string> subjects, unknown;
   for (const auto& [signature, c] : corpus) {
@@ -171,7 +171,7 @@ bool has_doubles(const fuzz::RegressionCorpus& corpus) {
   return std::any_of(corpus.begin(), corpus.end(), [](const auto& row) { return !row.second.pair.floats; });
 }
 
-// Returns "Not run on pairs of doubles: …", with the lanes that decide only the corpus's float32 pairs.
+// Returns "Not run on pairs of doubles: …", which lists the lanes that decide only float32 pairs; empty for none.
 std::string not_run_on_doubles(const fuzz::RegressionCorpus& corpus, const fuzz::SelectedLanes& under_test) {
   std::vector<std::string> ids;
   if (has_doubles(corpus)) {

@@ -33,7 +33,7 @@ TEST_F(CorpusVerb, TakesACampaignListsItAndHolds) {
       << some.err;
   EXPECT_EQ(shell("graze corpus list --corpus some | grep -v moller_1997 | grep -cE '^ +(point|segment|area)/'").out,
             "0\n");
-  // Adding the same campaign again changes no count; another campaign does.
+  // Adding the same campaign again changes no count; adding another campaign does.
   EXPECT_EQ(shell("cp corpus/regression/cases.pairs a; graze corpus add c --top 3; cmp corpus/regression/cases.pairs a")
                 .status,
             0);

@@ -46,7 +46,7 @@ struct Comparisons {
   fuzz::SelectedLanes of_subjects;  // if the user named no lane: those of --subject, even if they do not run
 };
 
-// Returns the function that runs a lane of a user's code here.   Throws: UsageError if the lane has none.
+// Returns the function that runs a lane of a user's code here.   Throws: UsageError if the lane does not run here.
 DecideBlock on_host(const Lane& lane) {
   const fuzz::SelectedLanes selected = fuzz::select_lanes({lane.id});
   fuzz::expect_each_runs(selected);
@@ -90,8 +90,8 @@ Comparisons comparisons_of_subjects(const std::vector<std::string>& names, fuzz:
   return comparisons;
 }
 
-// Returns the comparisons that the user named. By default, returns those of the subjects or, without subjects, `cpu`
-// with both CUDA builds for each algorithm and scalar.
+// Returns the comparisons that the user named. If there are none, returns those of the subjects or, without subjects,
+// for each algorithm and scalar those of `cpu` with both CUDA builds.
 Comparisons comparisons_of(const DiscrepancyOptions& options) {
   if (const auto names = names_of_subjects(options); options.lanes.empty() && !names.empty())
     return comparisons_of_subjects(names, options.subjects.executor);
@@ -121,8 +121,7 @@ Comparisons comparisons_of(const DiscrepancyOptions& options) {
   return comparisons;
 }
 
-// Prefers two proper triangles, because a fault is hard to see on a segment or a point. Among equally good pairs,
-// prefers the simpler one.
+// Prefers two proper triangles, because an error is hard to see on a segment or a point. Then prefers the simpler pair.
 bool shows_better(const AnyPair& l, const AnyPair& r) {
   const auto is_degenerate = [](const AnyPair& pair) {
     return fuzz::shape_name(visit(pair, [](const auto& own) { return relation_of(own).hulls; })) == "degenerate";
@@ -182,7 +181,7 @@ int compare(const std::vector<std::string>& names) {
 
 constexpr const char* kFloat32Alone = "values of lanes in float are compared only on pairs of float32";
 
-// Unless the user named the lanes, leaves out those whose values are not compared on doubles, and reports them.
+// Unless the user named the lanes, leaves out lanes whose values are not compared on doubles, and lists these lanes.
 // Throws: UsageError if the user named a lane that takes only float32.
 void keep_for_doubles(Comparisons& comparisons, bool named) {
   std::erase_if(comparisons.values, [&](const analysis::LanesCompared& lanes) {
@@ -341,8 +340,8 @@ void add_discrepancy(CLI::App& app, int& status) {
   command
       ->add_option(
           "--executor", options->executor,
-          "Where values are compared. auto: on a device if there is one, else on the host with twins; the counts are "
-          "the same")
+          "Where values are compared. auto: on a device if there is one, else on the host with twins; the counts do "
+          "not depend on this choice")
       ->transform(one_of({"auto", "device", "twin"}, Chosen::place))
       ->option_text("auto|device|twin");
   command

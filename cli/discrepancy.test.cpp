@@ -83,7 +83,7 @@ TEST_F(DiscrepancyCommand, ACampaignsColumnIsTheSumOfItsVerdicts) {
   expect_done(compare + "--strata lattice --seed 7 --out c");
   expect_done("graze report c");
   EXPECT_TRUE(has(shell.file("c/report.html"), {other_pairs}));
-  // This draws more pairs of a stratum than the campaign did.
+  // This command draws more pairs of a stratum than the campaign did.
   expect_done("graze discrepancy " + first + " " + second + " --executor twin --pairs 2000 --strata thesis --out c");
   expect_done("graze report c");
   EXPECT_TRUE(has(shell.file("c/report.html"), {"that the campaign did not draw (seed 1)"}));
@@ -194,7 +194,8 @@ TEST_F(DiscrepancyCommand, TheThesissAlgorithmDiffersOnTheX87) {
   EXPECT_GT(x87, fused);
 }
 
-// For a CUDA source, operands of comparisons are compared too. Here, only one of two comparisons has products.
+// For a CUDA source, operands of comparisons are compared too. In this source, only one of the two comparisons has
+// products in its operands.
 TEST_F(DiscrepancyCommand, ComparesTheOperandsOfYourOwnCudaSource) {
   std::ofstream(shell.folder / "mine.cu") << R"(
 __device__ bool meet(const float a[9], const float b[9]) {
@@ -299,7 +300,8 @@ TEST_F(DiscrepancyCommand, ExplainShowsTwoLanesSideBySide) {
              {"values differ, no comparison does", "plane_distance.b[0]"});
 }
 
-// By default a campaign's own code is compared. If only one of its lanes runs, published lanes are compared.
+// By default a campaign's own code is compared. If only one lane of the campaign's code runs, published lanes are
+// compared.
 TEST_F(DiscrepancyCommand, ComparesTheCodeOfACampaign) {
   expect_done(
       "echo 'int intersects(const float* a, const float* b) { return a[0] * b[1] > a[1] * b[0]; }' > own.c; "

@@ -383,8 +383,8 @@ TEST_F(Doubles, CasesBecomePrograms) {
   expect_done(repro + "obj > case.obj && grep -q 1.0000000000009095 case.obj");
 }
 
-// Two triangles are 1e-10 apart. The decimals of one triangle have few digits, and those of the other have many. Both
-// are decided as written, in either order.
+// Two triangles are 1e-10 apart. The coordinates of one triangle have few digits, those of the other have many. In
+// either order, both triangles are decided as written.
 TEST_F(Doubles, AllDecimalsOfTwoMeshesAreDoublesIfSomeHaveManyDigits) {
   std::ofstream(shell.folder / "few.off") << "OFF\n3 1 0\n0.1 0 0\n0.1 1 0\n0.1 0 1\n3 0 1 2\n";
   std::ofstream(shell.folder / "many.off") << "OFF\n3 1 0\n0.1000000001 0 0\n0.1000000001 1 0\n0.1000000001 0 1\n"
@@ -888,8 +888,8 @@ TEST_F(Doubles, TryTakesTheDoublesOfCodeInDouble) {
   const Ran screen =
       shell("export XDG_CACHE_HOME=$PWD/cache; graze try double.cpp:meet --coordinates f64 --pairs 300 --out screen");
   EXPECT_TRUE(has(screen.out, {"Instead: exact/f64/cpu is right on all 300 pairs."}));
-  // Code in float gets the mesh as float32 stores it, unless the user asks for doubles; storing errors then count as
-  // the code's own.
+  // By default, code in float gets the mesh rounded to float32. If the user asks for doubles, errors from that rounding
+  // count as the code's own.
   tried("float.cpp:meet walls.off --out f");
   EXPECT_TRUE(shell.json("f/summary.json")["strata"].contains("mesh"));
   tried("float.cpp:meet survey.toml --out g");

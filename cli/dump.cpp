@@ -122,8 +122,8 @@ analysis::LanesCompared compared_lanes(const std::vector<std::string>& ids) {
   return {published_lane(ids[0]), published_lane(ids[1])};
 }
 
-// Writes one row for each pair with both lanes' verdicts and choices, and one row for each value that at least one lane
-// compares. Numbers are hexadecimal.
+// For each pair, writes one row with both lanes' verdicts and branch choices, and one row for each value that at least
+// one lane compares. Numbers are hexadecimal.
 void dump_values(const DumpOptions& options) {
   const analysis::LanesCompared lanes = compared_lanes(options.values);
   const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
@@ -199,7 +199,7 @@ void add_dump(CLI::App& app, int&) {
       ->default_str("csv");
   command
       ->add_option("--pairs", options->pairs,
-                   "Number of pairs in total; by default 1000 of a stratum, all of a campaign")
+                   "Number of pairs in total; by default 1000 for a stratum, all for a campaign")
       ->transform(whole_number(1, kMostWhole))
       ->option_text("N");
   add_lane_options(*command, options->lanes);

@@ -11,9 +11,9 @@
 
 namespace graze::cli {
 
-// Emits the first case on which the snippet can show that a lane under test is wrong. Prefers the first such lane of
-// the algorithm in the case's signature. If snippets of this kind show no lane, emits the first case on which any lane
-// is wrong, or else the first case. `name` is the user's name for the cases.
+// Emits the first case on which the snippet can show that a lane under test is wrong. If several lanes are wrong on it,
+// shows the first one, preferably of the algorithm in the case's signature. If snippets of this kind show no lanes,
+// emits the first case on which any lane is wrong, or else the first case. `name` is the user's name for the cases.
 // Throws: std::runtime_error if there is no such case, or none with finite coordinates.
 std::string emit(reports::SnippetKind kind, const std::string& name, const std::vector<corpus::Entry>& entries,
                  const fuzz::SelectedLanes& under_test);

@@ -25,7 +25,8 @@
 namespace graze::cli {
 namespace {
 
-// Whether a value is off by more than a thousandth. Smaller errors are ordinary rounding, and are not shown.
+// Whether a value's relative error is more than about a thousandth. Smaller errors are ordinary rounding, and are not
+// shown.
 bool is_off(const oracle::Beside& beside, Scalar scalar) {
   return !(beside.ulps <= std::ldexp(1e-3, scalar == Scalar::f32 ? 23 : 52));
 }
@@ -111,7 +112,7 @@ std::string lane_text(const AnyPair& pair, const analysis::LaneExplanation& lane
   const auto contractions = [&] {
     if (lane.contractions.sites.empty()) return;
     line(4, fmt::format("contractions, {}:", lane.contractions.smallest ? "the smallest set that makes the difference"
-                                                                        : "in sets that are each enough"));
+                                                                        : "several sets that each suffice"));
     for (const cuda::ContractionSite& site : lane.contractions.sites) {
       const std::string inlined =
           *site.from.file == '\0' ? "" : fmt::format(", inlined at {}:{}", site.from.file, site.from.line);
@@ -163,11 +164,10 @@ std::string cost_of_rounding(const std::string& lane) {
   }
   try {
     const subjects::KernelCosts costs = subjects::kernel_costs(builds);
-    return fmt::format(
-        "Cost of a pair on {}, for {} of the stratum uniform that are already in its memory: {} {}, {} {}.",
-        printable(costs.device), reports::counted(subjects::kPairsOfKernelCosts, "pair"), rounded,
-        reports::cost_words(analysis::quartiles(costs.nanoseconds.at(0))), lane,
-        reports::cost_words(analysis::quartiles(costs.nanoseconds.at(1))));
+    return fmt::format("Cost per pair on {}, measured on {} of the stratum uniform in its memory: {} {}, {} {}.",
+                       printable(costs.device), reports::counted(subjects::kPairsOfKernelCosts, "pair"), rounded,
+                       reports::cost_words(analysis::quartiles(costs.nanoseconds.at(0))), lane,
+                       reports::cost_words(analysis::quartiles(costs.nanoseconds.at(1))));
   } catch (const std::runtime_error& error) {
     return fmt::format("Cost of -fmad=false: not measured, because {}.", printable(error.what()));
   }

@@ -62,7 +62,7 @@ std::string kind_text(const Json& kind, std::size_t number, bool all, const repo
     const std::string sentence = sentences[i];
     if (i == 0 || analysis::tells_difference_from_cpu(sentence)) text += line(2, sentence);
   }
-  text += line(2, fmt::format("{} of {}, classified by one pair each{}; wrong: {}; simplest: {}",
+  text += line(2, fmt::format("{} of {}, each signature classified by one pair{}; wrong: {}; simplest: {}",
                               reports::counted(kind["pairs"].get<std::uint64_t>(), "pair"),
                               reports::counted(kind["signatures"].get<std::uint64_t>(), "signature"),
                               errors.empty() ? "" : ", " + errors, lanes_within(kind["lanes"], subject), file));

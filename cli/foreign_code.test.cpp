@@ -160,7 +160,7 @@ int intersects(const float a[9], const float b[9]) {
   expect_done("graze fuzz --lanes 'moller_1997/f32/cpu' --strata uniform --pairs 100 --out d");
 }
 
-// The results of minimize count as the campaign's, so they must come from the code that the campaign ran.
+// The results of `graze minimize` become part of the campaign, so they must come from the code that the campaign ran.
 TEST_F(ForeignCode, MinimizeRefusesCodeThatTheCampaignDidNotRun) {
   const std::string always = "echo 'int meet(const float a[9], const float b[9]) { return 1; }' > a.c";
   expect_done(always +

@@ -344,7 +344,7 @@ void add_fuzz(CLI::App& app, int& status) {
       ->add_option(
           "--engine", options->engine,
           "Engine that judges the pairs. cpu: see --judge; gpu: runs every step on the device; only for CUDA lanes. "
-          "auto: gpu where possible. Results do not depend on it")
+          "auto: gpu where possible. The engine does not affect results")
       ->transform(one_of({"auto", "cpu", "gpu"}, Chosen::place))
       ->option_text("auto|cpu|gpu")
       ->default_str("auto");
@@ -352,8 +352,8 @@ void add_fuzz(CLI::App& app, int& status) {
       ->add_option(
           "--judge", options->by_exact_lane,
           "Ground truth of the CPU engine. oracle: CGAL decides every pair, GMP confirms every disagreement; exact: "
-          "the "
-          "exact lane decides, CGAL and GMP confirm one pair in 1,000 and every kept case. Results do not depend on it")
+          "the exact lane decides, CGAL and GMP confirm one pair in 1,000 and every kept case. "
+          "The choice does not affect results")
       ->transform(one_of({"oracle", "exact"}, Chosen::place))
       ->option_text("oracle|exact")
       ->default_str("oracle");

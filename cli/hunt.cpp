@@ -143,7 +143,7 @@ void add_hunt(CLI::App& app, int& status) {
       ->option_text("MINUTES");
   add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of the search");
   add_count(*command, "--threads", options->threads, 0, kMostThreads,
-            "Number of rounds at once, at most four; 0 means one per core. Results do not depend on it");
+            "Number of simultaneous rounds, at most four, which does not affect results; 0 means one per core");
   command->add_option("--out", options->out, "Directory of the search; an unfinished search in it is resumed")
       ->capture_default_str()
       ->option_text("DIR");

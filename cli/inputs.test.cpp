@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// User input: wrong words, counts, pasted pairs and missing files. Also the commands that graze suggests.
+// Tests user input (wrong words, counts, pasted pairs, missing files) and the commands that graze suggests.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -76,7 +76,7 @@ TEST_F(Inputs, RefusedCommandsChangeNoFolder) {
   expect_error("graze corpus add c --top 1 --lanes '*/f32/cpu' --corpus x", 2, {"cannot write into x", "--force"});
   EXPECT_EQ(shell("ls x").out, "notes.txt\n");
   expect_done("graze corpus add c --top 1 --lanes '*/f32/cpu' --corpus x --force");
-  // Without the database, the strata must be those of the campaign.
+  // Even without the database, a summary whose strata were changed is refused.
   expect_done("sed -i 's/\"lattice\"$/\"thesis\"/' c/summary.json");
   expect_error("graze report c", 1, {"c/summary.json", "strata"});
   expect_error("graze fuzz --subject z=cmd:no-such-cmd --pairs 10 --out z", 1, {"no-such-cmd"});

@@ -40,7 +40,7 @@ TEST_F(InvariantsCommand, LeavesTheSameBytesWhateverTheThreads) {
   EXPECT_GT(json["lanes"][0]["invariants"]["order"]["changed"], 0);
 }
 
-// The file and the table list the effect of each scale factor, such as doubling, besides that of scaling as a whole.
+// Besides the effect of all scalings together, the file and the table list that of each factor, such as 2.
 TEST_F(InvariantsCommand, TellsWhatEachScalingChangesAlone) {
   const std::string invariants =
       "graze invariants --lanes 'projected_sat/f32/cpu' --strata near_edge_edge --pairs 500 --out l";

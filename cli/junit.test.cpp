@@ -44,8 +44,8 @@ TEST_F(Junit, EscapesWhatXmlForbids) {
                                    {"other", {{"s", "skipped: no <device>"}}}}));
 }
 
-// Each lane and stratum is a test. It fails if the summary counts wrong verdicts, and shows a pair on which the lane is
-// wrong.
+// Each lane on each stratum is a test, which fails if the summary counts wrong verdicts, and shows a pair on which the
+// lane is wrong.
 TEST_F(Junit, OfACampaignHasTheCountsOfItsSummary) {
   expect_done(
       "graze fuzz --executor twin --pairs 4000 --strata 'uniform,lattice,near_edge_edge' --out c --junit r.xml "

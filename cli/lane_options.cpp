@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options --lanes, --subject and --executor, which are the same for all verbs. Also selects lanes, opens a user's
+// Adds the options --lanes, --subject and --executor, which are the same for all verbs; selects lanes, opens a user's
 // code, and reports lanes that do not run.
 #include <fmt/format.h>
 
@@ -29,23 +29,23 @@ void add_subject_options(CLI::App& command, LaneOptions& options) {
       command
           .add_option(
               "--subject", options.subjects,
-              "Your own code, as lanes NAME/…. WHAT is a shared object or a C, C++ or CUDA source with :FUNCTION, or "
-              "cmd:COMMAND; see docs/your_own_code.md. May be repeated")
+              "Your own code; the names of its lanes begin with NAME/. WHAT is cmd:COMMAND, or FILE[:FUNCTION] for a "
+              "shared object or a C, C++ or CUDA source; see docs/your_own_code.md. May be repeated")
           ->allow_extra_args(false)
           ->option_text("NAME=WHAT");
   command
       .add_option("--flags", options.flags,
-                  "Compiler flags for subjects that are sources, such as --flags='-O3 -Iinclude'")
+                  "Compiler flags for subjects given as source files, such as --flags='-O3 -Iinclude'")
       ->needs(subject)
       ->allow_extra_args(false)
       ->option_text("TEXT");
   command
       .add_option(
           "--toolchains", options.toolchains,
-          "Toolchains that also compile the published algorithms and the subjects that are sources, as further lanes: "
+          "Toolchains that build additional lanes of the published algorithms and of subjects given as source files: "
           "names such as arm64-gcc, all, or FILE.toml; see docs/toolchains.md")
       ->option_text("NAME,...");
-  command.add_option("--subject-timeout", options.timeout, "Time limit of a subject for one pair, in seconds")
+  command.add_option("--subject-timeout", options.timeout, "Time limit per pair for a subject, in seconds")
       ->needs(subject)
       ->check(number(0.001, 86400.0))
       ->capture_default_str()
@@ -63,8 +63,8 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
                 static_cast<int>(fuzz::Executor::twin) == 2 && static_cast<int>(fuzz::Executor::both) == 3);
   command
       .add_option("--executor", options.executor,
-                  "Executor of the CUDA lanes. auto: the device if there is one, else its twin; both: device and twin, "
-                  "compared")
+                  "Executor of the CUDA lanes. auto: the device if there is one, else the twins; both: device and "
+                  "twins, compared")
       ->transform(one_of({"auto", "device", "twin", "both"}, Chosen::place))
       ->option_text("auto|device|twin|both")
       ->default_str("auto");

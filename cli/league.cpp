@@ -45,7 +45,7 @@ std::string trimmed(const std::string& text) {
   return first == text.npos ? "" : text.substr(first, last - first + 1);
 }
 
-// Reads NAME=WHAT lines. Below such a line, indented lines `version: …`, `source: …` or `convention: …` give facts that
+// Reads lines NAME=WHAT, below which indented lines `version: …`, `source: …` or `convention: …` may give facts that
 // the code does not report. `pairs: N` limits the pairs of a slow subject. # begins a comment.
 // Throws: std::runtime_error with file and line.
 std::vector<reports::LeagueSubject> read_subjects(const fs::path& file, fuzz::MostPairs& most) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stand-ins for the verbs that scripts/campaign does not build. Each ignores its arguments and prints that it is not
-// built.
+// Stand-ins for the verbs that scripts/campaign does not build. Each stand-in ignores its arguments and prints that the
+// verb is not built.
 #include <algorithm>
 
 #include "cli/commands.h"

@@ -85,7 +85,7 @@ std::string option_meant(const CLI::App& app, int argc, char** argv) {
 // Prints one line, even if the quoted names and texts contain control characters.
 int fail(std::string what, int status) {
   for (char& c : what) c = static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? ' ' : c;
-  // If even this cannot be written, only the exit status shows the failure.
+  // If this line cannot be written either, only the exit status shows the failure.
   std::fputs(fmt::format("{} {}\n", graze::reports::red(graze::cli::error_screen(), "graze:"), what).c_str(), stderr);
   return status;
 }
@@ -111,7 +111,7 @@ int main(int argc, char** argv) {
   try {
     std::cout.exceptions(std::ios_base::badbit);
     expect_verb(app, argc > 1 ? argv[1] : "");
-    // CLI11 would parse "[a,b]" as a list. Here it is a file name.
+    // "[a,b]" is a file name here, but CLI11 would parse it as a list.
     std::vector<std::string> words(argv + 1, argv + argc);
     for (std::string& word : words) {
       if (word.starts_with('[') && word.ends_with(']')) word.insert(0, "./");

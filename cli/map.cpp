@@ -143,7 +143,7 @@ void draw_map(const MapOptions& options) {
 
 void add_map(CLI::App& app, int&) {
   CLI::App* command =
-      app.add_subcommand("map", "Draw the verdicts around a case while two of its coordinates move by single ulps");
+      app.add_subcommand("map", "Draw the verdicts around a case as two of its coordinates move by single ulps");
   command->footer("Example: graze map mixed_scale:1:3 --lanes '*/f32/cpu'");
   auto options = std::make_shared<MapOptions>();
   command->add_option("CASE", options->name, "File of pairs, whose first pair is drawn, or STRATUM:SEED:INDEX")
@@ -158,10 +158,10 @@ void add_map(CLI::App& app, int&) {
   command
       ->add_option(
           "--x", options->x,
-          "Coordinate that moves to the right; by default, --x and --y are the coordinates along which verdicts "
+          "Coordinate that grows to the right; by default, --x and --y are the coordinates along which verdicts "
           "change most")
       ->option_text("b[0].x");
-  command->add_option("--y", options->y, "Coordinate that moves upwards")->option_text("b[0].y");
+  command->add_option("--y", options->y, "Coordinate that grows upwards")->option_text("b[0].y");
   command->callback([options] { draw_map(*options); });
 }
 

@@ -79,7 +79,7 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
       "  signature: {}\n  magnitudes other than 0 and 1: {}, before {}\n"
       "  cause: {}, as before\n"
       "{}"
-      "  worst on the way: {:.7g} ulps\n",
+      "  largest margin found: {:.7g} ulps\n",
       analysis::key(fuzz::signature_of(found.failure, found.result.pair)), nontrivial_magnitudes(found.result.pair),
       nontrivial_magnitudes(found.original), analysis::name(found.result.reason.cause),
       reports::wrapped(minimal, screen.columns, 2, 4), found.result.worst_ulps);
@@ -186,7 +186,7 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
   fmt::print("number of magnitudes other than 0 and 1: signatures with that number (median {}):\n{}",
              magnitudes[magnitudes.size() / 2], reports::wrapped(counts, output_screen().columns, 2, 2));
   fmt::print(
-      "Wrote {}/cases/: the minimised pair first, then the worst pair met, then the originals\n"
+      "Wrote {}/cases/: the minimised pair first, then the worst pair found, then the originals\n"
       "and, for each kind of failure, an explanation and the ulp maps of its simplest case\n",
       printable(directory));
 }

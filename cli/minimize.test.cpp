@@ -112,7 +112,7 @@ TEST_F(Minimize, LanesAreThoseOfTheCampaignOrThoseAskedFor) {
   expect_error("graze minimize host --lanes 'moller_*/cuda-nofma'", 2, {"the campaign did not run it"});
 }
 
-// Each case file states its signature; a file that another program wrote or moved there is rejected.
+// Each case file states its signature; a file that another program wrote, changed or moved is rejected.
 TEST_F(Minimize, CasesThatAreNotTheCampaignsAreRefusedAndCanBeBroughtBack) {
   expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c > /dev/null && cp -r c whole");
   const auto rows = shell.json("c/summary.json")["signatures"];

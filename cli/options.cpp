@@ -14,7 +14,7 @@ namespace graze::cli {
 
 namespace {
 
-// Parses "1000000", "1_000_000", "1e6", "2.5e6" or "10M".   Returns: nothing if the number is not whole, or too large.
+// Parses "1000000", "1_000_000", "1e6", "2.5e6" or "10M".   Returns: null if the number is not whole or is too large.
 std::optional<std::uint64_t> parse_count(std::string_view text) {
   std::string digits;
   int power = 0;
@@ -96,7 +96,7 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
 
 CLI::Option* add_threads_option(CLI::App& command, int& threads) {
   return add_count(command, "--threads", threads, 0, kMostThreads,
-                   "Number of threads; 0 means one per core. Results do not depend on it");
+                   "Number of threads, which does not affect results; 0 means one per core");
 }
 
 CLI::Validator number(double least, double most) {

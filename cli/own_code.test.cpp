@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A user's own code. Its failures become programs that fail while the code is wrong and pass once it is fixed. Also
-// tests `graze fuzz --fail-above`.
+// Tests a user's own code: its failures become programs that fail while the code is wrong and pass once it is fixed.
+// Also tests `graze fuzz --fail-above`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -292,7 +292,7 @@ TEST_F(OwnCodeTest, CudaAgainstCpuIsExplained) {
   const Ran device_only = explained("--subject own=./own.cu:one --lanes 'own/*'");
   EXPECT_TRUE(has(device_only.out, {"cuda-fma"})) << device_only.err;
   EXPECT_FALSE(has(device_only.out, {"differs from cpu"}));
-  // Checks the claim: if only the products on that line are rounded, the verdict is that of cpu.
+  // Checks the explanation's claim: if only the products on that line are rounded, the verdict is that of cpu.
   shell("sed '2s/.*/  return __fsub_rn(__fmul_rn(t[0], t[1]), __fmul_rn(t[3], t[4]));/' own.cu > rounded.cu");
   const Ran rounded =
       shell(cached + "graze check p --json --executor twin --lanes 'own/*/cuda-fma' --subject own=./rounded.cu:one");
@@ -372,7 +372,7 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   const std::string ours = "graze fuzz --pairs 400 --out d --fail-above ";
   expect_error(ours + "0 --lanes 'moller*/f32/cpu'", 1, {"moller_1997", "0", "--fail-above"});
   expect_done("graze fuzz --pairs 400 --out e --lanes 'exact/f32/cpu' --fail-above 0");
-  // It is an error if no lane of a subject is selected.
+  // If no lane of a subject is selected, that is an error.
   expect_error("export XDG_CACHE_HOME=$PWD/cache; graze fuzz --subject own=./own.c --lanes 'exact/f32/cpu' --out f", 2,
                {"own", "--lanes"});
 }

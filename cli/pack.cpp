@@ -49,7 +49,7 @@ class InFolder {
   fs::path before_;
 };
 
-// Opens the subjects from only the pack's files, so that Graze writes no pack that lacks a file.
+// Opens the subjects using only the pack's files, so that Graze never writes a pack that lacks a file.
 void expect_subjects_open(const fuzz::Pack& pack, const Json& recorded) {
   if (recorded.empty()) return;
   const Scratch scratch(subjects::cache_folder());
@@ -144,7 +144,7 @@ void add_pack(CLI::App& app, int&) {
       "pack",
       "Write a campaign into one file with everything needed to run it again: results, spec, sources, meshes, "
       "versions");
-  command->footer("Example: graze pack campaign   and elsewhere: graze repro campaign.sqlar");
+  command->footer("Example: graze pack campaign\nOn another machine: graze repro campaign.sqlar");
   auto directory = std::make_shared<std::string>(), out = std::make_shared<std::string>();
   command->add_option("DIR", *directory, "Directory of a complete campaign")->required();
   command->add_option("--out", *out, "File for the pack (default: DIR.sqlar)")->option_text("FILE");

@@ -138,10 +138,10 @@ int pareto(ParetoOptions options) {
   const reports::Screen screen = output_screen();
   fmt::print("{}", reports::pareto_table(pareto, screen));
   if (options.device) {
-    print_wrapped(
-        {fmt::format("Registers and local bytes are per thread. Threads are those that a multiprocessor of {} "
-                     "holds at once, of at most {}.",
-                     pareto.machine, pareto.threads_at_once)});
+    print_wrapped({fmt::format(
+        "Registers and local bytes are per thread. Threads: how many a multiprocessor of {} holds at once; "
+        "it can hold at most {}.",
+        pareto.machine, pareto.threads_at_once)});
   }
   print_wrapped(reports::pareto_sentences(pareto));
   fmt::print("{}", reports::extremes_text(pareto, screen));

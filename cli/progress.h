@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Progress of a long run. On a terminal, it is one line that is rewritten five times a second. Elsewhere, a new line
-// appears after every tenth of the run, but at most one every ten seconds and at least one every half minute.
+// Shows the progress of a long run: on a terminal, in one line that is rewritten five times a second. Elsewhere, a new
+// line appears after every tenth of the run, but at most one every ten seconds and at least one every half minute.
 #pragma once
 
 #include <cstddef>

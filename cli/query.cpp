@@ -137,7 +137,7 @@ std::string evidence_of(const Run& run) {
   return lane && on_cores ? backends::backend_of(*lane).evidence(*lane, run.of_doubles) : "";
 }
 
-// A query counts failures of a user's code as declined. This function tells failures from declined verdicts.
+// A query counts failures of a user's code as declined verdicts; this function finds the failures among them.
 template <class Real>
 void find_failures(Run& run, const TrianglesOf<Real>& references, const TrianglesOf<Real>& triangles) {
   const Lane* lane = find_lane(run.lane);
@@ -276,7 +276,7 @@ void expect_different_files(const QueryOptions& options) {
     const std::filesystem::path path = std::filesystem::absolute(file, no_file),
                                 place = std::filesystem::weakly_canonical(path, no_file);
     if (!file.empty() && !files.insert(no_file ? path : place).second)
-      throw UsageError("--csv, --obj, --pairs and --mismatches need different files; two of them are " +
+      throw UsageError("--csv, --obj, --pairs and --mismatches need different files, but two of them name " +
                        shown_path(file));
   }
 }
@@ -345,8 +345,8 @@ void query_mesh(const QueryOptions& options, int& status) {
   say_notes(of_references, of_mesh, options.exact_input, are_doubles);
   if (has_doubles && !are_doubles && matches_any(lanes.ids, "exact"))
     fmt::print(stderr,
-               "graze: exact decides the rounded triangles too, because the other lanes take float32; alone, it "
-               "decides the doubles\n");
+               "graze: exact decides the rounded triangles too, because the other lanes take float32; as the only "
+               "lane, exact decides the doubles\n");
   are_doubles
       ? answer<double>(options, lanes, of_references.triangles_in_doubles(), of_mesh.triangles_in_doubles(), status)
       : answer<float>(options, lanes, of_references.triangles, of_mesh.triangles, status);
@@ -377,7 +377,8 @@ void add_query(CLI::App& app, int& status) {
       ->excludes("files")
       ->option_text("MESH");
   command
-      ->add_flag("--between", options->between, "Find all intersecting pairs of two meshes, named instead of REF MESH")
+      ->add_flag("--between", options->between,
+                 "Find all intersecting pairs of two meshes, which are given instead of REF MESH")
       ->excludes("--self");
   CLI::Option* any = command->add_flag("--any", options->any, "Stop at the first hit");
   command->add_flag("--all", options->all, "Find all hits (default)")->excludes(any);

@@ -119,7 +119,7 @@ TEST_F(QueryCommand, SeveralLanesAreComparedAndMismatchesAreCases) {
   EXPECT_EQ(found["others"][0]["hits"], found["hits"]);
 }
 
-// Recounts the mismatches of every two runs from the verdicts of single runs.
+// For each combination of two runs, counts the mismatches again from the verdicts of single runs.
 TEST_F(QueryCommand, CudaLanesRunByTheirTwinsAndAreComparedTwoByTwo) {
   if (shell("graze lanes | grep -q 'available (device)'").status == 0) GTEST_SKIP() << "a device runs these lanes";
   std::string text;

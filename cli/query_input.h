@@ -19,7 +19,7 @@ struct QueryLanes {
 };
 
 // Opens the subjects. Without patterns, selects `common` and the subjects' lanes. Reports which requested lanes do not
-// run. Throws: UsageError if no lane of a pattern or subject exists, or runs here.
+// run. Throws: UsageError if a pattern or a subject selects no lane, or none that runs here.
 QueryLanes query_lanes(const LaneOptions& options, const std::vector<std::string>& common);
 
 // Reads a text file with nine numbers for each reference, or one triangle of a mesh, named MESH#FACE; faces count from
@@ -44,8 +44,8 @@ inline TriangleOf<double> second_of(const AnyPair& pair) {
   return {pair.doubles.b[0], pair.doubles.b[1], pair.doubles.b[2]};
 }
 
-// The triangles as an OBJ file, in named groups. Each number has enough digits to distinguish it from all others of its
-// type: float32 if float32 can hold it, otherwise double.
+// The triangles as an OBJ file, in named groups. Each number is written with enough digits to be read back exactly, as
+// a float32 if float32 can hold it, otherwise as a double.
 struct ObjGroup {
   std::string name;
   std::vector<TriangleOf<double>> triangles;

@@ -29,7 +29,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using reports::grouped;
 
-// Memory limits, in pairs. The first is for a CSV file, which takes about 3 GB while it is written. The second is for
+// Limits on the number of pairs in a file, which is built in memory: for a CSV file (about 3 GB at the limit), and for
 // the files of --pairs and --obj.
 constexpr std::size_t kMostRows = std::size_t{1} << 26, kMostCases = std::size_t{1} << 22;
 
@@ -71,10 +71,10 @@ Kept kept(const Search& search) {
 void expect_within_limits(const Search& search) {
   const auto expect = [](const std::string& file, std::uint64_t pairs, std::size_t most) {
     if (!file.empty() && pairs > most)
-      throw std::runtime_error(
-          fmt::format("cannot write {}: {} pairs are more than its limit of {}; leave it out to get only the counts, "
-                      "or split the mesh",
-                      file, grouped(pairs), grouped(most)));
+      throw std::runtime_error(fmt::format(
+          "cannot write {}: {} pairs are more than the file's limit of {}; omit the file to get only the counts, "
+          "or split the mesh",
+          file, grouped(pairs), grouped(most)));
   };
   expect(search.options.csv, search.found.all(), kMostRows);
   expect(search.options.pairs, search.hits(), kMostCases);

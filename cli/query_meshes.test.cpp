@@ -114,7 +114,7 @@ class QueryMeshes : public CommandTest {
   }
 };
 
-// Triangles of all strata with nearby coordinates: degenerate ones, coplanar ones, and those that share vertices.
+// Triangles from all strata, in one region; some are degenerate or coplanar, and some share vertices.
 TEST_F(QueryMeshes, FindThePairsOfBruteForceWithTheOracle) {
   Triangles a, b;
   for (const strata::StratumInfo& row : strata::kStrata) {

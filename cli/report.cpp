@@ -40,7 +40,8 @@ void say_what_the_page_is() {
     fmt::print("The page is plain: this build had no Node, or no npm packages (see reports/README.md)\n");
 }
 
-// Writes NAME.html, NAME.json, costs.json and tables to the directory.   Returns: their names, the page first.
+// Writes NAME.html, NAME.json, costs.json and tables to the directory.   Returns: the names of these files, the page
+// first.
 std::vector<std::string> write_report(const fs::path& directory, const Json& report, const char* name) {
   const Json costs = reports::make_costs(directory);
   const std::string html = reports::page(report, costs, reports::make_choices(directory));
@@ -109,8 +110,8 @@ void report(const ReportOptions& options) {
     fmt::print("Wrote {}\n", printable(options.out));
     say_what_the_page_is();
   } else if (!options.compare.empty()) {
-    // This report is made first, while no foreign code is open. Only its counts are needed, and both campaigns may use
-    // the same name for different code.
+    // The first campaign's report is made while no foreign code is open, because only its counts are needed, and both
+    // campaigns may use the same name for different code.
     const Json before = reports::make_report(options.compare[0]);
     Json after = make_report(options.compare[1]);
     const Json rows =
@@ -144,12 +145,13 @@ void add_report(CLI::App& app, int&) {
                       "Campaign directory; report.html, report.json and the tables are written into it");
   command
       ->add_option("--compare", options->compare,
-                   "Two campaigns: a report of the second and its changes since the first, as compare.html and "
-                   "compare.json in the "
-                   "second directory")
+                   "Two campaigns: writes a report on the second and on its changes since the first, as compare.html "
+                   "and compare.json in the second directory")
       ->expected(2)
       ->option_text("DIR1 DIR2");
-  command->add_option("--from", options->from, "Existing report.json; writes only its page, to the file given by --out")
+  command
+      ->add_option("--from", options->from,
+                   "Existing report.json from which only the page is written, to the file given by --out")
       ->option_text("FILE");
   command->add_option("--out", options->out, "File for the page of --from")->option_text("FILE");
   command->callback([options] { report(*options); });

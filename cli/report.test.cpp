@@ -20,8 +20,8 @@ class Report : public CommandTest {
   nlohmann::json json(const char* file) { return shell.json(file); }
 };
 
-// The map counts differences from x86-gcc, by signatures. x86-gcc's verdict equals cpu's on every pair, so these counts
-// must equal the differences from cpu in the rates.
+// The map of toolchains counts differences from x86-gcc, as computed from the signatures. x86-gcc's verdict equals
+// cpu's on every pair, so these counts must equal the differences from cpu in the rates.
 TEST_F(Report, MapsToolchains) {
   expect_done(
       "graze fuzz --pairs 4000 --lanes 'interval_overlap/*,exact/f32/cpu' --executor twin "
@@ -274,7 +274,7 @@ TEST_F(Report, ForeignFilesBesideTheDatabaseStay) {
   expect_done(fuzz);
 }
 
-// A trigger could drop rows while the run reports that it is done.
+// A trigger in the database could delete rows although the run reports that it is done.
 TEST_F(Report, OtherTablesAndTriggersAreRefused) {
   const std::string fuzz = "graze fuzz --pairs 300 --lanes moller_1997/f32/cpu --strata uniform --out c";
   for (const char* edit : {"delete from batch; create trigger t after insert on batch begin delete from batch; end",
@@ -361,7 +361,8 @@ TEST_F(Report, ComparesTwoCampaigns) {
                   {"and kinds of failure are not compared; differences under "}));
 }
 
-// The code is edited between two campaigns. They can be compared in both orders, and each page shows its own code.
+// If the code is edited between two campaigns, the campaigns can be compared in both orders, and each page shows its
+// own campaign's code.
 TEST_F(Report, ComparesCodeBeforeAndAfterAnEdit) {
   for (const std::string answer : {"0", "1"}) {
     expect_done("echo 'extern \"C\" int hit(const float*, const float*) { return " + answer +

@@ -30,7 +30,7 @@ void refuse_folder(const fs::path& out, const std::string& own) {
 
 void add_force_flag(CLI::App& verb) {
   verb.add_flag("--force", fuzz::may_replace_foreign,
-                "Replace files that graze did not write, and use folders that hold other files");
+                "Replace files that graze did not write, and write into folders that hold other files");
 }
 
 void add_force(CLI::App& app) {

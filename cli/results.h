@@ -13,7 +13,8 @@ namespace graze::cli {
 
 inline constexpr const char* kPairs = "graze-pairs 1\n";  // the first line of a file of pairs
 
-// Adds --force to one verb, or to all that write results where the user says, except `merge`: its folder must be new.
+// Adds --force to one verb, or to all verbs that write results to a place that the user names, except `merge`, whose
+// folder must be new.
 void add_force_flag(CLI::App& verb);
 void add_force(CLI::App& app);
 
@@ -47,7 +48,7 @@ void expect_writable(const std::filesystem::path& folder);
 // verb that writes `own`.
 std::filesystem::path made_folder(const std::filesystem::path& out, const char* own);
 
-// A folder for a verb's results. It is created if missing, and locked, so that two runs do not mix their results.
+// A folder for a verb's results: created if missing, and locked so that two runs do not mix their results.
 struct ResultFolder {
   // own: the file that identifies the folder as this verb's; a campaign's folder is accepted too.
   // Throws: UsageError for another folder that is not empty; std::runtime_error for one that cannot be created or

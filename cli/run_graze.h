@@ -105,14 +105,15 @@ class CommandTest : public testing::Test {
     EXPECT_TRUE(has(shell.done(command).out, parts)) << command;
   }
 
-  // Runs the command and sends it `signal` once it catches SIGTERM; earlier, SIGTERM would end it with status 143.
+  // Runs the command and sends it `signal` as soon as its handler for SIGTERM is installed; before that, SIGTERM would
+  // end it with status 143.
   Ran signalled(const std::string& command, const std::string& signal, const std::string& before = "true") const {
     return shell(command + " & p=$!; until [ $((0x$(awk '/SigCgt/ {print $2}' /proc/$p/status) >> 14 & 1)) = 1 ] && " +
                  before + "; do sleep 0.02; kill -0 $p || exit 99; done; kill -" + signal + " $p; wait $p");
   }
 
-  // Expects this exit status, and one line on stderr that names these words (core/message_testing.h). On a slow
-  // machine, progress lines may come before that line.
+  // Expects this exit status, and one line on stderr that contains these words (core/message_testing.h). On a slow
+  // machine, progress lines may precede the line.
   void expect_error(const std::string& command, int status, const std::vector<std::string>& words) const {
     const Ran ran = shell(command);
     EXPECT_EQ(ran.status, status) << command << '\n' << ran.err;

@@ -84,8 +84,8 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   EXPECT_TRUE(has(shell.file("one/report.json"), {"--scene hills.toml --pairs 20000"}));
   const Ran dumped = shell("graze dump one --pairs 40 --format pairs");
   EXPECT_TRUE(has(dumped.out, {"scene=" + of})) << dumped.err;
-  // If only a comment is added to the scene, its campaign resumes. Another scene makes another campaign, and case names
-  // no longer match.
+  // If only a comment is added to the scene, its campaign resumes. If the scene itself changes, so does the campaign,
+  // and case names no longer match.
   expect_done("sed -i '1i # mine' hills.toml && " + fuzz + "--out one");
   expect_done("sed -i 's/^units.*/units = \"m\"/' hills.toml");
   const Ran other = shell(fuzz + "--out one");

@@ -9,8 +9,8 @@
 
 namespace graze::cli {
 
-// A terminal has as many columns as it reports, or else COLUMNS. It has colour unless NO_COLOR is set or TERM is dumb.
-// Files and pipes have 80 columns and no colour.
+// A terminal has as many columns as it reports or, if it reports none, as COLUMNS says. Its output has colour unless
+// NO_COLOR is set or TERM is dumb. Files and pipes have 80 columns and no colour.
 reports::Screen output_screen();
 reports::Screen error_screen();
 
@@ -26,7 +26,7 @@ class LimitedText {
  public:
   explicit LimitedText(int most) : left_(most) {}
 
-  // Returns: whether the block is in the text.
+  // Returns: whether the block was added.
   bool add(const std::string& block);
   bool complete() const { return complete_; }
   const std::string& text() const { return text_; }

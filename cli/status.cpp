@@ -88,7 +88,7 @@ void expect_own_counts(const fs::path& directory, const Json& status) {
                     status.at("disagreements").get<std::uint64_t>(), found, disagreements, most)));
 }
 
-// known: the signatures of earlier rows, without margins. The function adds those of this row.
+// known: the signatures of earlier rows, without margins; the function adds this row's signatures.
 Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::string>& known) {
   Json row = {{"directory", directory.string()},
               {"shard", nullptr},
@@ -109,7 +109,8 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
   if (status.is_null()) {
     if (fuzz::has_database(directory))
       throw std::runtime_error(
-          cannot("open", directory / "status.json", "it is missing beside a database (`graze merge` writes none)"));
+          cannot("open", directory / "status.json",
+                 "it is missing although the folder has a database (a campaign from `graze merge` has no status)"));
     return row;
   }
   // At least 0, even if this machine's clock is behind the writer's.
@@ -196,7 +197,8 @@ std::string table(const Json& all) {
   return text;
 }
 
-// Returns the figures in Prometheus' text format. Its node exporter reads such text from a folder of *.prom files.
+// Returns the figures in Prometheus' text format. Prometheus' node exporter reads such text from a folder of *.prom
+// files.
 std::string prometheus(const Json& all) {
   const auto label = [](const std::string& text) {
     std::string escaped;
@@ -206,7 +208,7 @@ std::string prometheus(const Json& all) {
   std::string text;
   for (const auto& [name, help] : {std::pair{"pairs", "Pairs that the shard has."},
                                    {"done", "Pairs that are judged."},
-                                   {"rate", "Pairs judged per second; 0 if the shard does not run."},
+                                   {"rate", "Pairs judged per second; 0 if the shard is not running."},
                                    {"disagreements", "Pairs on which some lane is wrong."},
                                    {"signatures", "Signatures seen."},
                                    {"new", "Signatures, ignoring margins, that no earlier shard in the list has."}}) {
@@ -247,7 +249,7 @@ void add_status(CLI::App& app, int& status) {
       ->transform(whole_number(1, 1'000'000'000))
       ->capture_default_str()
       ->option_text("SECONDS");
-  command->add_option("--prometheus", options->prometheus, "File for the same figures in Prometheus' text format")
+  command->add_option("--prometheus", options->prometheus, "File to write the figures to, in Prometheus' text format")
       ->option_text("FILE");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->callback([options, &status] { status = status_command(*options); });

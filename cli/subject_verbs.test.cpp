@@ -154,8 +154,8 @@ TEST_F(SubjectVerbs, ParetoComparesTheCostOfOwnCode) {
   EXPECT_TRUE(has(shell.file("table"), {"line/f32/cpu"}));
 }
 
-// A campaign knows its subjects. If their code has changed, verbs say so, leave it out, and show what was stored;
-// --resubject runs the changed code.
+// A campaign records its subjects. If a subject's code has changed, verbs say so, do not run it, and show the stored
+// verdicts; --resubject runs the changed code.
 TEST_F(SubjectVerbs, ChangedCodeIsSaidAndStoredVerdictsAreShown) {
   expect_done(
       std::string(kWithoutDevice) +
@@ -196,8 +196,8 @@ TEST_F(SubjectVerbs, ChangedCodeIsSaidAndStoredVerdictsAreShown) {
   }
 }
 
-// Lanes without a twin do not run here. Each verb that takes patterns says so in its text and its JSON, with the reason
-// and what would run them. A pattern that selects only such lanes is an error.
+// Lanes without a twin do not run here. Each verb that takes patterns names these lanes in its text and its JSON, with
+// the reason and with what would make them run. A pattern that selects only such lanes is an error.
 TEST_F(SubjectVerbs, LanesThatDoNotRunAreSaid) {
   struct Row {
     std::string command;  // without --lanes

@@ -28,8 +28,8 @@ constexpr int kPasses = 9;
 // Without an error, 3 / rate pairs are enough to show the rate; more pairs leave room for some errors.
 std::uint64_t pairs_for(double rate) { return std::max<std::uint64_t>(100'000, std::llround(std::ceil(6 / rate))); }
 
-// Draws the pairs on which the choice is made or judged. Leaves out a mesh's own pairs, which do not depend on the seed
-// and are needed at the end.
+// Draws the pairs on which the choice is made or judged. Leaves out a mesh's own pairs: they do not depend on the seed,
+// and they are reserved for the final confirmation.
 std::vector<strata::PairSource> pairs_before(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
                                              PairTypes types) {
   std::vector<strata::PairSource> sources = drawn({pairs, seed, {}, types, scene}).sources;

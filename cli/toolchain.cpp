@@ -329,7 +329,7 @@ void add_toolchain(CLI::App& app, int& status) {
   CLI::Option* json = command->add_option("--json", options->json, "File for the results")->option_text("FILE");
   CLI::Option* subject = command
                              ->add_option("--subject", options->subjects,
-                                          "C or C++ source whose fused products to list, instead of those of the "
+                                          "C or C++ source whose fused products are listed instead of those of the "
                                           "published algorithms. May be repeated")
                              ->allow_extra_args(false)
                              ->option_text("NAME=FILE[:FUNCTION]");

@@ -55,7 +55,7 @@ const Case kCases[] = {
      "sum_in_loop"},
     {"X87Stored", "'x86_64-linux-gnu-gcc -O2 -mfpmath=387 -ffloat-store' --claims rounded", "excess",
      "division nearest root subnormal_nearest"},
-    // Scripts that drop or replace the flag.
+    // Compiler wrappers that drop or replace the contraction flag.
     {"FlagDropped", "'./dropping -O2 -march=x86-64-v3 -ffp-contract=off'", "contracted", kUnroundedProducts, true},
     {"FlagReplaced", "'./replacing --target=x86_64-linux-gnu -O2 -march=x86-64-v3 -ffp-contract=on'", "contracted",
      "inlined statements", true},
@@ -73,7 +73,7 @@ class ToolchainCommand : public testing::TestWithParam<Case> {
   Shell shell{std::string("toolchain-") + GetParam().name};
 };
 
-// Returns the names of the canaries whose "documentation" is this word.
+// Returns the names of the canaries whose "documentation" field is this word.
 std::string names_with(const nlohmann::json& json, const std::string& word) {
   std::set<std::string> names;
   for (const auto& result : json["results"]) {
@@ -122,7 +122,7 @@ TEST_F(Toolchain, EmulatorsDivideAndTakeRootsExactly) {
   if (emulated == 0) GTEST_SKIP() << "no cross compiler with an emulator";
 }
 
-// fmaf() in Debian 12's wasi-libc rounds wrongly near the midpoint of two numbers. No other check of wasm fails.
+// fmaf() in Debian 12's wasi-libc rounds wrongly near the midpoint of two numbers. All other checks of wasm pass.
 TEST_F(Toolchain, TheLibrarysOwnFmaIsTested) {
   if (shell("graze toolchain | grep -q '^wasm .* yes$'").status != 0) GTEST_SKIP() << "no wasm";
   const Ran ran = shell("graze toolchain wasm --json r.json");

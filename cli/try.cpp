@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze try`: from a source file to the answer. It builds the code as a subject, runs a campaign, minimises the
-// failures that matter most, and prints one screen. The folder is a campaign directory, which all other verbs accept.
+// `graze try`: from a source file to the answer. The verb builds the code as a subject, runs a campaign, minimises the
+// failures that matter most, and prints one screen. The output folder is a campaign directory, which all other verbs
+// accept.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -47,8 +48,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostTold = 3;  // failures on the screen
-// Number of signatures to minimise for each kind of failure, in compiled code and in a program. Those with the simplest
-// pairs come first.
+// Number of signatures to minimise for each kind of failure, in compiled code and in a program. Signatures with the
+// simplest pairs come first.
 constexpr std::size_t kMostOfKind = 4, kMostOfProgram = 1;
 constexpr int kThreadsForPrograms = 4;          // for each core, because Graze mostly waits for the answers
 constexpr std::uint64_t kPairsOfCode = 40'000;  // for compiled code
@@ -83,7 +84,7 @@ FuzzOptions campaign_options(const TryOptions& options, const TriedCode& code) {
   return fuzz;
 }
 
-// The command with ten times the pairs, as a shell reads it.
+// The command with ten times the pairs, quoted for a shell.
 std::string with_more_pairs(const TryOptions& options, const FuzzOptions& fuzz) {
   std::string command =
       fmt::format("graze try {}{} --pairs {}", path_word(options.source),
@@ -126,7 +127,7 @@ std::string put_aside(const std::string& out, const Json& spec) {
 }
 
 // Minimises signatures of the kinds to report until each of these kinds has a minimised pair.   Returns: the kinds;
-// null if the user interrupts it.
+// null if the user interrupts the minimiser.
 Json minimised_kinds(const fuzz::SelectedLanes& under_test, const fs::path& directory, const Json& summary,
                      const reports::ReportLane& lane, std::size_t most_of_kind) {
   const std::atomic<bool>& interrupted = catch_interrupts();
@@ -208,8 +209,8 @@ std::string by_hand(const TriedCode& code, const std::string& pair) {
   return fmt::format("echo {} | {}", pair, code.what.substr(kCommand.size()));
 }
 
-// Returns the last line that the program prints on stderr when it fails on the pair. Empty if it does not fail now, or
-// prints nothing.
+// Returns the last line that the program prints on stderr when it fails on the pair. Empty if the program does not fail
+// this time, or prints nothing.
 std::string last_words(const TriedCode& code, const std::string& pair, double seconds) {
   const Scratch scratch(subjects::cache_folder());
   int status = 0;
@@ -232,13 +233,13 @@ void tell_crash(const Answer& answer, const std::string& lane, double seconds) {
     if (simplest.at("verdicts").value(lane, "") != name(Verdict::crashed)) continue;
     const std::string pair = simplest.at("pair"), words = last_words(answer.code, pair, seconds);
     if (words.empty()) continue;
-    return fmt::print(stderr, "graze: {} crashes on some pairs: {}; to see all of it: {}\n", lane, words,
+    return fmt::print(stderr, "graze: {} crashes on some pairs: {}; to see its whole output: {}\n", lane, words,
                       by_hand(answer.code, pair));
   }
 }
 
-// First runs the code on a few pairs. If it always fails, like a program that does not start, a campaign would find
-// nothing and would start it again for each pair.   Throws: std::runtime_error.
+// Runs the code on a few pairs first. If the code fails on all of them, like a program that does not start, a campaign
+// would find nothing and would start the program again for each pair.   Throws: std::runtime_error.
 void expect_answers(const TriedCode& code, const fuzz::SelectedLanes& under_test, const strata::PairSource& source,
                     double seconds) {
   constexpr std::uint64_t kAsked = 3;
@@ -264,7 +265,7 @@ void expect_answers(const TriedCode& code, const fuzz::SelectedLanes& under_test
                       words = all_crashed ? last_words(code, pair, seconds) : "";
     hint = fmt::format("{}; to see {}: {}",
                        words.empty() ? "a program must answer each line of 18 numbers with a line 1, 0 or ?, and a "
-                                       "Python function is named like mine.py:meet (docs/your_own_code.md)"
+                                       "Python function is given as mine.py:meet (docs/your_own_code.md)"
                                      : "it says: " + words,
                        words.empty() ? "why" : "all of it", by_hand(code, pair));
   } else if (unstable && subjects::opened(code.name)->kind == "library") {

@@ -142,7 +142,7 @@ OwnEpsilon epsilon_of_code(const Lane& own, const std::string& directory) {
   if (found.tune.empty())
     found.why_not = fmt::format("Graze cannot change {}: {}.", words.empty() ? "its epsilon" : "it",
                                 words.empty() ? "it finds none in " + printable(file.filename().string())
-                                              : "--epsilon of `graze tune` has no name for it");
+                                              : "`graze tune --epsilon` cannot name it");
   return found;
 }
 
@@ -266,7 +266,8 @@ std::string text_of(const Answer& answer, const reports::Screen& screen) {
   after.push_back(answer.told.empty()
                       ? fmt::format("Next, with more pairs: {}", answer.again)
                       : fmt::format("Next: graze explain {}", path_word(case_of(answer, answer.told[0]))));
-  // The costs change with each run. They always count as kLinesOfCosts lines, so that the rest stays the same.
+  // The costs change with each run. The sentence always counts as kLinesOfCosts lines, so that the rest of the screen
+  // stays the same.
   const std::string lines = reports::wrapped(costs, screen.columns, 0, 2);
   const auto unused = kLinesOfCosts - std::count(lines.begin(), lines.end(), '\n');
   return reports::one_screen(before, failures, after, screen,

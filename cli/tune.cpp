@@ -312,10 +312,11 @@ void add_tune(CLI::App& app, int& status) {
       ->excludes("--scene")
       ->option_text("DIR");
   add_count(*command, "--pairs", options->pairs, 10, kMostWhole,
-            "Number of pairs on which the choice is tested; without --from, it is made on a tenth as many other pairs")
+            "Number of pairs on which the choice is tested; without --from, the choice is made on other pairs, a tenth "
+            "as many")
       ->default_str("1000000; with --from as many as the campaign drew");
   add_count(*command, "--seed", options->seed, 0, kMostWhole - 1,
-            "Seed of the pairs on which the choice is made; it is tested on pairs of the next seed")
+            "Seed of the pairs on which the choice is made; the pairs on which it is tested have the next seed")
       ->excludes("--from");
   CLI::Option* const forbid = command->add_option(
       "--forbid", options->forbid, "Errors to avoid: false negatives, false positives, or any wrong verdict");
@@ -323,13 +324,14 @@ void add_tune(CLI::App& app, int& status) {
       ->option_text("false-negative|false-positive|any")
       ->default_str("any");
   command
-      ->add_option("--max-rate", options->max_rate, "Highest rate of such errors; with --agree, of differing verdicts")
+      ->add_option("--max-rate", options->max_rate,
+                   "Highest rate of the forbidden errors; with --agree, of differing verdicts")
       ->check(number(1e-15, 1.0))
       ->capture_default_str()
       ->option_text("RATE");
   CLI::Option* const max_other = command->add_option(
       "--max-other", options->max_other,
-      "With one kind of error forbidden: highest rate of the other kind at which a tolerance is useful");
+      "If --forbid names one kind of error: highest rate of the other kind at which a tolerance is still useful");
   max_other->check(number(0.0, 1.0))->capture_default_str()->option_text("RATE");
   add_threads_option(*command, options->threads);
   command

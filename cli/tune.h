@@ -66,12 +66,13 @@ std::string smallest(const Lane& first, const Lane& second, const AnyPair& pair)
 void write_listed(const std::filesystem::path& out, const std::vector<Result>& results,
                   std::initializer_list<Result> optional);
 
-// Returns the "Next" line. Its command checks the last result if that is a file of pairs, and has the --subject that a
-// lane of a user's code needs.
+// Returns the "Next" line. The command checks the last result if that is a file of pairs. If a lane needs the option
+// --subject, the command has it.
 std::string next_command(const std::filesystem::path& out, const Result& last, const std::string& lanes);
 
-// Returns sentences with each lane's cost per pair: host lanes on one core, CUDA lanes on the device. Says which
-// costs are not measured: those of programs, and of CUDA lanes without a device (a twin's time is not the lane's).
+// Returns sentences with each lane's cost per pair: host lanes on one core, CUDA lanes on the device. One sentence
+// names the lanes whose cost is not measured: programs, and CUDA lanes without a device (a twin's time is not the
+// lane's).
 std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
                                         const std::vector<strata::PairSource>& sources);
 
@@ -80,9 +81,9 @@ std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
 void expect_errors_of(const std::string& directory, const fuzz::Json& campaign, const analysis::TuneSpec& spec,
                       const std::string& lane);
 
-// Returns the text of changes.csv, for --from. It covers the pairs on which the tolerance was chosen, with a row for
-// each pair on which the lane is wrong without a tolerance ("wrong"), and for each pair that the best tolerance of a
-// curve fixes or breaks. own_code: the decider under a policy if the lane is a user's code; else null.
+// Returns the text of changes.csv, for --from. The file covers the pairs on which the tolerance was chosen, with a row
+// for each pair on which the lane is wrong without a tolerance ("wrong"), and for each pair that the best tolerance of
+// a curve fixes or breaks. own_code: the decider under a policy if the lane is a user's code; else null.
 inline constexpr const char* kChangesHeader = "stratum,seed,index,truth,tolerance,change\n";
 std::string changes_csv(const Lane& lane, const analysis::DecideUnder& own_code, const analysis::TuneSpec& spec,
                         const analysis::Tuned& tuned, std::uint64_t seed, int threads);

@@ -118,7 +118,7 @@ TEST_F(TuneCommand, ChoosesOnTheDisagreementsOfACampaign) {
     }
   }
   EXPECT_GE(tolerances, 4);
-  // One pair of each kind is drawn again by its number.
+  // For each kind of change, one pair is drawn again by its seed and index.
   const std::string chosen = tuned["chosen"];
   for (const auto& [key, zero_wrong, chosen_wrong] :
        {std::tuple{chosen + ",fixes", true, false}, {chosen + ",breaks", false, true}}) {
@@ -139,7 +139,7 @@ TEST_F(TuneCommand, ChoosesOnTheDisagreementsOfACampaign) {
   expect_error(tune + "--scene x.toml", 2, {"--scene", "--from"});
 }
 
-// A campaign of different code: its counts are plausible, but its pairs now give other counts.
+// A campaign that ran different code: its counts are plausible, but a recount on its pairs gives other counts.
 TEST_F(TuneCommand, ACampaignWhosePairsShowOtherErrorsIsRefused) {
   expect_done("graze fuzz --strata near_edge_edge --pairs 2k --lanes moller_1997/f32/cpu --out c > /dev/null");
   auto summary = shell.json("c/summary.json");
@@ -181,7 +181,7 @@ TEST_F(TuneCommand, NextIsACommandThatRuns) {
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "t/fixed.pairs"));
 }
 
-// The header, compiled by itself, decides like the lane on fresh pairs.
+// The header, compiled by itself, gives the same verdicts as the lane on fresh pairs.
 TEST_F(TuneCommand, TheHeaderDecidesAsTheLane) {
   expect_done(
       "graze tune moller_1997/f32/cpu --strata near_vertex_face --pairs 5k --forbid false-negative --max-rate 1e-2 "

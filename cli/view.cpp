@@ -92,7 +92,7 @@ Verdict exact_verdict(const AnyPair& pair) {
 }
 
 // Adds the triangles, and the pairs whose boxes overlap, starting with those on which some lane is wrong. If some
-// coordinates have more digits than float32 holds, the pairs are of doubles.
+// coordinates have more digits than float32 holds, all pairs are pairs of doubles.
 void add_mesh(const fs::path& file, bool exact_input, Viewed& viewed) {
   expect_utf8("the mesh", file.string());
   const strata::MeshPairs mesh = strata::read_bodies({file});
@@ -132,7 +132,7 @@ void show_against_the_first(Viewed& viewed) {
   viewed.opens_with_triangles = true;
 }
 
-// Adds the triangles of `graze query REFERENCE MESH`, hits first. The pairs to show are the hits.
+// Adds the triangles of `graze query REFERENCE MESH`, hits first. Only the hits become pairs to show.
 void add_query(const std::string& reference, const std::string& file, bool exact_input, Viewed& viewed) {
   const strata::MeshPairs of_references = read_references(reference), of_mesh = strata::read_triangles(file);
   const bool are_doubles = of_references.rounding.beyond > 0 || of_mesh.rounding.beyond > 0;
@@ -235,8 +235,9 @@ void add_view(CLI::App& app, int&) {
                       "query`: a file of "
                       "nine numbers, or MESH#FACE");
   command
-      ->add_option("--random", *random,
-                   "Number of random triangles to show first, drawn as in the thesis of 2012, against its reference")
+      ->add_option(
+          "--random", *random,
+          "Number of random triangles to show first, drawn as in the thesis of 2012, against the thesis's reference")
       ->transform(whole_number(1, reports::kMostViewedTriangles))
       ->excludes(pairs)
       ->option_text("N");

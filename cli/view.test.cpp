@@ -133,7 +133,7 @@ TEST_F(ViewCommand, PairsOfDoublesAsTheyAre) {
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "e.html"));
 }
 
-// The user's code in double gets the doubles; code in float gets what float32 stores of them.
+// The user's code in double gets the doubles; code in float gets them rounded to float32.
 TEST_F(ViewCommand, OwnCodeIsAskedAboutDoubles) {
   std::ofstream(shell.folder / "mine.c") << "int meet(const double* a, const double* b) { return a[0] == b[0]; }\n"
                                             "int meet_f(const float* a, const float* b) { return a[0] == b[0]; }\n";

@@ -76,7 +76,7 @@ struct Line {
   }
 };
 
-// Skips text such as "float t[2][3][3] =", or "Vec3 a" before a bracket.   Returns: whether there was any.
+// Skips text such as "float t[2][3][3] =", or "Vec3 a" before a bracket.   Returns: whether there was such text.
 bool skip_name(Line& line) {
   const auto begins = [](const Line& at) {
     return std::isalpha(static_cast<unsigned char>(at.rest[0])) != 0 || at.rest[0] == '_';
@@ -86,7 +86,7 @@ bool skip_name(Line& line) {
     line.take(assigned + 1);
     return true;
   }
-  // Otherwise, one or more names must precede a bracket.
+  // Without a "=", one or more names must precede a bracket.
   Line ahead(line);
   while (!ahead.at_end() && begins(ahead))
     ahead.take_until([](char c) { return !is_key_char(c) && c != ':' && c != '<' && c != '>'; });
@@ -116,7 +116,8 @@ struct Draft {
   std::optional<std::size_t> only_double;  // the first number that needs a double
 };
 
-// Whether the exponent has more than five digits. The oracle reads numbers exactly, so such a number could fill memory.
+// Whether the exponent has more than five digits; because the oracle reads numbers exactly, such a number could fill
+// memory.
 bool has_long_exponent(std::string_view number) {
   const std::size_t at = number.find_first_of(is_hex(number) ? "pP" : "eE");
   if (at == number.npos) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text format of pairs and cases: one pair per line, 18 numbers and optional fields. This is its only reader and
-// writer. docs/formats.md describes the format.
+// The text format of pairs and cases: one pair per line, 18 numbers and optional fields. This is the only code that
+// reads and writes the format, which docs/formats.md describes.
 #pragma once
 
 #include <cstddef>
@@ -72,7 +72,7 @@ class PairReader {
   bool versioned_ = false;
 };
 
-// Opens a file of pairs.   Throws: FormatError if it is missing, is a folder, or cannot be read.
+// Opens a file of pairs.   Throws: FormatError if the file is missing, is a folder, or cannot be read.
 std::ifstream open_pairs(const std::filesystem::path& file);
 
 // Reads all entries of a file.   Throws: FormatError, including if the file is missing or cannot be read.
@@ -95,7 +95,7 @@ const std::string* field(const Entry& entry, std::string_view key);
 // Like `field`, but returns an empty string if there is no such key.
 std::string text_of(const Entry& entry, std::string_view key);
 
-// Returns STRATUM:SEED:INDEX, or STRATUM@SCENE:SEED:INDEX for a case of a scene; nothing if a field is missing.
+// Returns STRATUM:SEED:INDEX, or STRATUM@SCENE:SEED:INDEX for a case drawn in a scene; null if a field is missing.
 std::optional<std::string> numbers_of(const Entry& entry);
 
 // Returns the result of numbers_of, or else the field `from`: the origin of a minimised case.

@@ -25,7 +25,7 @@ using Progress = std::function<bool(std::uint64_t done)>;
 
 class Collector final : public cuda::QueryWork {
  public:
-  // Requires: no outputs if `any`, because the search then stops at a hit.
+  // Requires: no outputs if `any` is true, because the search then stops at a hit.
   Collector(std::vector<std::uint64_t> counts, std::vector<int> places, std::size_t references, bool any,
             const Outputs& outputs, Progress progress);
 

@@ -16,7 +16,7 @@
 
 namespace {
 
-// If this is n > 0, the n-th allocation from now and all later ones fail. If it is -1, none fails.
+// If this counter is n > 0, the n-th allocation from now and all later ones fail. If it is -1, no allocation fails.
 std::atomic<long> allocations_left = -1;
 
 bool allocation_fails() {
@@ -280,7 +280,7 @@ TEST(Query, WrongArgumentsAreNamed) {
   graze_close(context);
 }
 
-// Ten triangles in a layout. At least one of them meets the thesis's reference.
+// Ten triangles in a layout; at least one of them meets the thesis's reference.
 struct InLayout {
   std::vector<Triangle> triangles = thesis_triangles(10);
   std::vector<std::array<std::uint32_t, 3>> faces;

@@ -38,7 +38,7 @@ void set(graze_answer& answer, graze_status status, const char* message) {
 // Defines the type that query_c.h declares.
 struct graze_context {
  public:
-  // Always fills in the answer. Its status tells whether the query failed.
+  // Always fills in the answer, whose status tells whether the query failed.
   void run(const graze_query& query, graze_answer& answer) noexcept;
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every exact verdict equals the verdicts of both oracle decisions. Every other verdict equals that of its lane.
+// Every exact verdict equals the verdicts of both oracle decisions. Every verdict of another lane equals the verdict
+// that this lane gives outside a query.
 #include <gtest/gtest.h>
 
 #include "core/exact/prepared_triangle.h"
@@ -107,7 +108,7 @@ TEST(QueryVerdicts, OfDoublesAreTheOraclesOverAllStrata) {
   EXPECT_GT(looked_past, apart / 2);
 }
 
-// Pairs whose triangles float32 stores in one plane.
+// Pairs whose triangles become coplanar when they are rounded to float32.
 TEST(QueryVerdicts, OfDoublesAreNotThoseOfFloats) {
   const auto at = [](double x) { return DoubleTriangle{x, 0, 0, x, 1, 0, x, 0, 1}; };
   const std::vector<DoubleTriangle> triangles = {at(1000000.02), at(1000000.01)};
@@ -214,8 +215,8 @@ TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
   EXPECT_EQ(bytes[2], 2);
 }
 
-// The slabs are the thinnest ones. Their directions are the normal, and the direction perpendicular to it and to the
-// longest edge (tested as each of the three). A thicker slab would cost time, but lose no hits.
+// The two slabs are the thinnest ones along the normal and along the direction perpendicular to the normal and the
+// longest edge (each of the three edges is tested as the longest). A thicker slab would cost time, but lose no hits.
 TEST(PreparedTriangle, SlabsAreSquareToTheNormalAndTheLongestEdge) {
   const Vec3<double> corners[3] = {{1, 2, 3}, {9, -6, 5}, {4, 1, 2.5}};
   const Vec3<double> longest = corners[1] - corners[0];

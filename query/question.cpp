@@ -18,9 +18,9 @@ namespace {
 constexpr std::uint64_t kMostTriangles = GRAZE_MOST_TRIANGLES, kMostReferences = 1 << 16, kMostParts = 1 << 16,
                         kMostPairs = std::uint64_t{1} << 62;
 
-// Times in nanoseconds, for GRAZE_AUTO only: one verdict on one core, and the transfer of a triangle of floats to a
-// device. Both are measured on an H200 and its host (docs/measurements.md). The time to start CUDA is assumed, not
-// measured.
+// Times in nanoseconds, for GRAZE_AUTO only: one verdict on one core, the transfer of a triangle of floats to a device,
+// and the start of CUDA. The first two are measured on an H200 and its host (docs/measurements.md); the third is
+// assumed.
 constexpr double kOnCore = 11, kToDevice = 0.7, kStart = 3e8;
 constexpr std::uint64_t kWorthThreads = 1 << 14;
 

@@ -25,8 +25,8 @@ struct Question : cuda::DeviceQuestion {
   std::vector<int> devices;  // used if devices do the work
 };
 
-// Returns the function that runs a lane on cores. By default it is the lane's own code; CUDA lanes have none, because
-// the library contains no twins. A program that has twins replaces this hook before its first query.
+// Returns the function that runs a lane on cores. By default this is the lane's own function, or null for a CUDA lane,
+// because the library contains no twins. A program that has twins replaces this hook before its first query.
 extern DecideBlock (*on_cores)(const Lane& lane);
 
 // Throws: QueryError if an argument is invalid or a required device is missing.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr triangle_t kReference = {{0, -2, 6}, {0, 5, 0}, {0, -3, 0}};
 triangle_t special_cases[] = {
-    // one for each position of the vertices relative to the line where the planes meet; all intersect
+    // one for each position of the vertices relative to the line where the two planes meet; all meet the reference
     {{-2, -2, 0}, {2, -3, 0}, {3, -1, 0}},
     {{2, -1, 0}, {-2, -1.5f, 0}, {-3, 0, 0}},
     {{0, 0, 0}, {-2, 0.5f, 0}, {-3, 2, 0}},

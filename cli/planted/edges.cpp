@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A triangle test that looks for edges piercing the other triangle; it is right on small integers. causes.test.cpp
-// plants bugs in it. It includes nothing, so that it compiles fast.
+// plants bugs in it. The file includes nothing, so that it compiles fast.
 static float least(float p, float q) { return p < q ? p : q; }
 static float most(float p, float q) { return p > q ? p : q; }
 static float size(float p) { return p < 0 ? -p : p; }

@@ -58,6 +58,17 @@ Path outcomes_of(const Trace<Ball>& run) {
   return outcomes;
 }
 
+// Bits with which the bounds separate unequal polynomials in the coordinates, up to degree kDegree. Quotients and roots
+// of such polynomials may need more.
+int separating_bits(const DoublePair& pair) {
+  constexpr int kDegree = 16;
+  int exponent = 0;
+  for (std::size_t i = 0; i < kCoordinates; ++i) {
+    if (coordinates(pair)[i] != 0) exponent = std::max(exponent, std::abs(std::ilogb(coordinates(pair)[i])));
+  }
+  return kDegree * (2 * exponent + std::numeric_limits<double>::digits);
+}
+
 // A run of the algorithm along a given path, with as many bits as it needs. Multi::precision keeps that number of bits.
 struct SettledRun {
   Trace<Ball> run;
@@ -66,12 +77,14 @@ struct SettledRun {
 SettledRun run_settled(int algorithm, const DoublePair& pair, const Path& lead = {}) {
   Path last;
   long last_untold = 0;
-  constexpr int kLeast = 256, kMost = 16384;
+  constexpr int kLeast = 256, kMost = 65536;
+  const int separating = separating_bits(pair);
   for (int bits = kLeast;; bits *= 4) {
     Trace<Ball> run = run_exactly(algorithm, pair, bits, lead);
     const long untold = Ball::untold;
     const bool certain = untold == 0;
-    const bool settled = certain || (bits > kLeast && untold == last_untold && outcomes_of(run) == last);
+    const bool settled =
+        certain || (bits > kLeast && bits >= separating && untold == last_untold && outcomes_of(run) == last);
     if (settled || bits == kMost) {
       const Verdict verdict = run.verdict;
       return {std::move(run), {verdict, bits, certain, settled}};

@@ -50,7 +50,8 @@ struct Exactly {
   Verdict verdict;
   int bits;      // bits of the mantissas
   bool certain;  // the bounds decided every comparison
-  bool settled;  // certain, or a quarter of the bits left the same number of comparisons open, with the same outcomes
+  bool settled;  // certain, or open with so many bits that only equal polynomials stay open, and a quarter of the bits
+                 // left the same number of comparisons open, with the same outcomes
 };
 Exactly decide_exactly(int algorithm, const DoublePair& pair);
 

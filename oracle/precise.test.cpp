@@ -140,6 +140,20 @@ TEST(Precise, ExactlySettlesRootsAndQuotients) {
   EXPECT_GT(untold, 100);
 }
 
+// projected_sat adds terms of degree 3 to coordinates, so near 2^257 even 1,024 bits leave unequal numbers unseparated.
+TEST(Precise, ExactlyIsTheSameWithMoreBits) {
+  const double unit[18] = {-2, -2, 1, -1, 0, 1, 0, 1, 2, 1, 0, 2, 2, 0, 2, -2, -1, 2};
+  for (const int exponent : {0, 100, 254, 256, 300, 1000, -257, -300, -1000}) {
+    DoublePair pair;
+    for (int i = 0; i < 18; ++i) coordinates(pair)[i] = std::ldexp(unit[i], exponent);
+    for (int algorithm = 0; algorithm < kAlgorithmCount; ++algorithm) {
+      const Exactly exactly = decide_exactly(algorithm, pair);
+      EXPECT_TRUE(exactly.settled) << algorithm << " 2^" << exponent;
+      EXPECT_EQ(exactly.verdict, decide_with_bits(algorithm, pair, 40'000)) << algorithm << " 2^" << exponent;
+    }
+  }
+}
+
 TEST(Precise, BitsNeededIsTheLeastFromWhichAllAreRight) {
   PairSource source(Kind::near, 14);
   int more = 0;

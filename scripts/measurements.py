@@ -46,7 +46,7 @@ Written by `scripts/measurements.py` from the records in [docs/measurements](mea
 - **value** is the newest value of the metric on that machine; a range is written "low to high".
 - **before** is the value that the same run measured for the commit before a change; otherwise it is the previous record's value.
 - **limit** is the best value that the hardware or the method allows, or the largest value that is permitted.
-- **commit** names the sources that were measured. If they were not recorded, "by" names the commit that added the figure.
+- **commit** names the sources that were measured. If that commit was not recorded, "by" names the commit that added the figure.
 - **how** is the number of the command in the list under the table.
 
 [measurements/not_taken.md](measurements/not_taken.md) lists ideas that were tried and rejected.

@@ -54,9 +54,9 @@ def riddle(r):
         f"{percent(share, 1)} of the thesis's rate. By default nvcc computes `a * b + c` with one rounding "
         "(*contraction*); our host compiler is told not to contract. Built with `-fmad=false`, the GPU differs from "
         f"the CPU on {count(none)} of {count(of(without))} verdicts of all lanes. The rest of the rate is "
-        "unexplained: the thesis gives no counts, no compiler and no flags. If it saw a single difference among "
-        f"{count(saw)} triangles, its own 95 % interval is {one_pair_in(high, '')} to {one_pair_in(low, '')}, and our "
-        "rate lies within it.",
+        "unexplained: the thesis gives no counts, no compiler and no flags. If the thesis saw a single difference "
+        f"among {count(saw)} triangles, its own 95 % interval is {one_pair_in(high, '')} to {one_pair_in(low, '')}, "
+        "and our rate lies within it.",
         figure,
         alt,
         main=("agreement", changed),
@@ -191,7 +191,7 @@ def processors(r):
         "processors",
         f"ARM64 and x86-64 give the same verdicts on {count(pairs)} pairs once contraction is off; with GCC's "
         f"defaults {count(low)} % to {count(high)} % differ",
-        "GCC contracts by default where the processor has a fused multiply-add. ARM64 has it; plain x86-64 does "
+        "GCC contracts by default where the processor has a fused multiply-add. ARM64 has it, and plain x86-64 does "
         f"not. So verdicts of the same source differ on {count(low)} % to {count(high)} % of {count(of(table))} pairs "
         "of all strata, most of them near contact. GCC changes about as many verdicts when it compiles for x86-64 "
         "processors that have fused multiply-adds (`-march=x86-64-v3`). "

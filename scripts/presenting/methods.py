@@ -57,7 +57,7 @@ def price(r):
         "that of `separating_axes` in float32, the published test that also decides several pairs at once in the "
         f"processor's vectors. On `uniform`, exact takes {count(exact['uniform'])} ns a pair and "
         f"`separating_axes` {count(axes['uniform'])} ns. Exact is cheaper on random pairs, on pairs that nearly "
-        "touch, and on pairs that share a vertex or an edge. It costs most where triangles are exactly coplanar or "
+        "touch, and on pairs that share a vertex or an edge. Exact costs most where triangles are exactly coplanar or "
         f"degenerate, touch exactly, or have very different sizes: up to {count(exact[last])} ns against "
         f"{count(axes[last])} ns (`{last}`). In calls of one pair, it takes {times(min(alone), math.floor)} to "
         f"{times(max(alone), math.ceil)} as long as `guigue_devillers_2003`. Times are medians on one core of a "
@@ -121,8 +121,8 @@ def which(r):
         f"also errs least on coplanar ({share('coplanar', axes)}), degenerate ({share('degenerate', axes)}) and "
         f"extreme pairs ({share('extreme', axes)}). If you must stay in float32, it again errs least "
         f"({share('general', axes32)} of general pairs), except on needles and extreme coordinates, where "
-        f"`guigue_devillers_2003` does ({share('extreme', devillers32)} against {share('extreme', axes32)}). If a "
-        "wrong verdict matters, use `exact`, which is wrong on none.",
+        f"`guigue_devillers_2003` errs least ({share('extreme', devillers32)} against {share('extreme', axes32)}). If "
+        "a wrong verdict matters, use `exact`, which is wrong on no pair.",
         bars(alt, f"% of {count(pairs)} general pairs on which a test is wrong", rows),
         alt,
         main=("campaign", f"Wrong verdicts of the default campaign, `{axes}`: general"),
@@ -188,10 +188,10 @@ def league(r):
         "the largest coordinate (in float32) away from touching: no convention and no rounding of the input excuses "
         f"it. The figure shows the {word(len(rows))} lanes, of {count(len(clear))}, with clearly wrong verdicts. "
         f"{word(len(double)).title()} libraries "
-        f"have them in float64 too ({', '.join(double)}). CGAL appears only with its kernel that computes in plain "
-        "float32; its exact kernels have none. None of the pairs is from an application, and a library without such "
-        "verdicts can still fail on closer pairs: [the league](../league.md) has all groups. Each of the "
-        f"{word(findings)} [findings](../league.md#findings) has the smallest pair and a program that shows the "
+        f"have such verdicts in float64 too ({', '.join(double)}). CGAL appears only with its kernel that computes in "
+        "plain float32; its exact kernels have no such verdicts. None of the pairs is from an application, and a "
+        "library without such verdicts can still fail on closer pairs: [the league](../league.md) has all groups. Each "
+        f"of the {word(findings)} [findings](../league.md#findings) has the smallest pair and a program that shows the "
         "failure with Debian 12's packages. Nothing was sent to the libraries' authors.",
         dots(alt, f"clearly wrong verdicts, of at most {count(pairs)} (logarithmic)", rows, (0, 4)),
         alt,

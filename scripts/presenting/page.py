@@ -25,8 +25,8 @@ TAIL = (
     "- [measurements.md](../measurements.md): every record, including those of speed.\n\n"
     "`scripts/results` writes this page and its figures from the records in "
     "[docs/measurements](../measurements/README.md); do not edit the page. A test fails if a record changes and "
-    "the page does not, or if the page has a number without a record. `scripts/results --site DIR` writes it as a "
-    "web site, which shows some of the pairs in 3-D.\n"
+    "the page does not, or if the page has a number without a record. `scripts/results --site DIR` writes this page "
+    "as a web site, which shows some of the pairs in 3-D.\n"
 )
 
 

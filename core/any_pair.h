@@ -17,7 +17,7 @@ struct AnyPair {
   AnyPair(const Pair& pair) : doubles(in_doubles(pair)), floats(pair) {}
   AnyPair(const DoublePair& pair) : doubles(pair) {}
 
-  // The pair in float32. A pair of doubles is rounded, as in a program that stores float32 coordinates.
+  // The pair in float32. Doubles are rounded, as by a program that stores coordinates as float32.
   Pair in_float32() const { return floats ? *floats : stored_in_float32(doubles); }
 };
 

@@ -64,7 +64,7 @@ const Example kExamples[] = {
 class EveryHostLane : public testing::TestWithParam<const Lane*> {};
 
 TEST_P(EveryHostLane, IsRightOnHandExamplesInAllOrders) {
-  // -ffast-math assumes that no value is NaN, but interval_overlap divides 0 by 0. It is then wrong on these pairs.
+  // -ffast-math assumes that no value is NaN, so interval_overlap is wrong on pairs for which it divides 0 by 0.
   if (info_of(GetParam()->variant).arithmetic == Arithmetic::fast) GTEST_SKIP() << "fast math promises nothing";
   for (const Example& example : kExamples) {
     if (example.projection_overlaps && GetParam()->info->id == "projected_sat") continue;
@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(Lanes, EveryHostLane, testing::ValuesIn(host_lanes()), 
   return id;
 });
 
-// Like the callers, converts in both directions in one function. GCC 12 may miscompile that; see stored_in_float32.
+// Converts to float32 and back in one function, as callers do; GCC 12 may miscompile that (see stored_in_float32).
 TEST(Pair, StoringInFloat32RoundsEveryNumber) {
   for (int n = 1; n < 100; ++n) {
     DoublePair pair;
@@ -249,7 +249,7 @@ void expect_policy_decides(std::initializer_list<Site> sites) {
     EXPECT_GT(counts[static_cast<int>(site)], 0) << Algorithm::kInfo.id << ", site " << static_cast<int>(site);
 }
 
-// A whole word of pairs gives the same counts as its verdicts one by one, for every combination of bits.
+// For every combination of bits, counting a word of pairs at once gives the same as counting verdicts one by one.
 TEST(JudgedBits, AreTheCountsOfVerdicts) {
   for (const bool foreign : {false, true}) {
     std::uint32_t bits[4] = {};  // intersects, declined, truth, judged; bit i of word b is bit b of i

@@ -33,13 +33,13 @@ struct At {
 
 inline namespace GRAZE_FP {
 
-// Shows the policy a value that the algorithm compares without an epsilon. Only recording policies use it.
+// Shows the policy a value that the algorithm compares without an epsilon. Only recording policies use this.
 template <class Policy, class Real>
 GRAZE_HD void see([[maybe_unused]] const Policy& policy, [[maybe_unused]] int question, [[maybe_unused]] Real& x) {
   if constexpr (requires { policy.seen(question, x); }) x = policy.seen(question, x);
 }
 
-// Tells the policy about a choice, such as an axis, that later quantities depend on. Only recording policies use it.
+// Tells the policy about a choice, such as an axis, that later quantities depend on. Only recording policies use this.
 // Requires: 0 <= value < 15, which < 15.
 template <class Policy, class Choice>
 GRAZE_HD Choice chosen(const Policy& policy, int which, Choice value) {

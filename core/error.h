@@ -6,7 +6,7 @@
 
 namespace graze {
 
-// An error in the user's request. The command exits with status 2; after other errors it exits with status 1.
+// An error in the user's request: graze exits with status 2, but with status 1 after any other error.
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 64-bit hash FNV-1a (Fowler, Noll and Vo), used to identify texts. It does not detect deliberate changes.
+// The 64-bit hash FNV-1a (Fowler, Noll and Vo), used to identify texts. FNV-1a does not detect deliberate changes.
 #pragma once
 
 #include <cstdint>

@@ -14,9 +14,9 @@
 
 namespace graze {
 
-// If the first byte is even, the next 72 or 144 bytes are the coordinates' bits. If it is odd, the second byte is an
-// exponent (times 8 for doubles). The next 18 bytes are small whole numbers, which make contacts common, times that
-// power of two. For doubles, 18 more bytes move each coordinate by as many ulps. Missing bytes are zeros.
+// If the first byte is even, the next 72 or 144 bytes are the coordinates' bits. If the first byte is odd, the second
+// byte (times 8 for doubles) is an exponent e; 2^e times each of the next 18 bytes is a coordinate, so contacts are
+// common. For doubles, each of 18 more bytes moves a nonzero coordinate by that many ulps. Missing bytes are zeros.
 template <class Real = float>
 BasicPair<Real> pair_of(std::string_view bytes) {
   constexpr bool kDoubles = sizeof(Real) == sizeof(double);

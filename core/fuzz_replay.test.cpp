@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replays the stored corpora of the linked fuzz targets. It needs no clang and is part of every build.
+// Replays the stored corpora of the linked fuzz targets. This test needs no clang and is part of every build.
 #include <gtest/gtest.h>
 
 #include <algorithm>

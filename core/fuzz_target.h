@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fuzz targets: functions that must handle any bytes. Each one is in a file x.fuzz.cpp next to the code that it tests.
+// Fuzz targets: functions that must handle any bytes. Each target is in a file x.fuzz.cpp next to the code under test.
 // fuzz/targets runs them under libFuzzer; core/fuzz_replay.test.cpp runs them only on the stored corpora.
 #pragma once
 

@@ -7,7 +7,7 @@
 
 namespace graze {
 
-// Bit i belongs to pair i of the word. For each pair, at most one of these words has the bit set.
+// Bit i belongs to pair i of the word. For each pair, at most one of these words has the pair's bit set.
 template <class Word>
 struct JudgedBits {
   Word false_positive, false_negative;

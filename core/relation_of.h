@@ -7,7 +7,7 @@
 
 namespace graze {
 
-// Requires: finite coordinates. Exact for every such pair.
+// Requires: finite coordinates.   Exact: always.
 GRAZE_HD inline Relation relation_of(const Pair& pair) { return exact::relation(&pair.a[0].x, &pair.b[0].x); }
 GRAZE_HD inline Relation relation_of(const DoublePair& pair) { return exact::relation(&pair.a[0].x, &pair.b[0].x); }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The request to stop, by Ctrl-C or SIGTERM. Code that may wait a long time checks for it ten times a second or more.
+// The request to stop, by Ctrl-C or SIGTERM. Code that may wait long checks for a request at least ten times a second.
 #pragma once
 
 #include <atomic>

@@ -24,8 +24,8 @@ bool is_exactly(std::string_view text, double value);
 std::optional<std::uint64_t> parse_whole(std::string_view text);
 
 // rounded_up returns the smallest decimal with `digits` significant digits that is not below the value; rounded_down
-// returns the largest that is not above it. The format is that of %g: 0.02032 gives "0.021" and "0.02". Use them to
-// print upper and lower bounds, which rounding to nearest could make false.   Requires: a finite value, 1 to 15 digits.
+// returns the largest that is not above it. The format is that of %g: 0.02032 gives "0.021" and "0.02". They are for
+// printed upper and lower bounds, which rounding to nearest could make false. Requires: a finite value, 1 to 15 digits.
 std::string rounded_up(double value, int digits);
 std::string rounded_down(double value, int digits);
 

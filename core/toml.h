@@ -17,8 +17,8 @@
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wshadow"
-// toml++ 3.3 marks a branch as unreachable. Characters such as U+00E9 outside quotes reach it, because they are neither
-// spaces nor letters.
+// toml++ 3.3 marks a branch as unreachable that characters such as U+00E9 outside quotes do reach, because they are
+// neither spaces nor letters.
 #include <toml++/impl/preprocessor.h>
 #pragma push_macro("TOML_UNREACHABLE")
 #undef TOML_UNREACHABLE

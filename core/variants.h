@@ -50,8 +50,8 @@ constexpr std::optional<Variant> variant_of_name(std::string_view id) {
   return std::nullopt;
 }
 
-// The variant for the same kind of processor that rounds every operation as written. For a toolchain's program, it is
-// the host's variant.
+// The variant that rounds every operation as written, on the same kind of processor; for a toolchain's program, the
+// host's variant.
 constexpr Variant rounded_variant(Variant variant) {
   const RunsOn where = info_of(variant).runs_on == RunsOn::device ? RunsOn::device : RunsOn::host;
   for (const VariantInfo& row : kVariants) {

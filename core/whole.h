@@ -5,7 +5,7 @@
 
 namespace graze {
 
-// The limit of pair counts, seeds and indices: 2^53. Every JSON reader represents all whole numbers up to it exactly.
+// The largest pair count, seed and index: 2^53. JSON readers represent all whole numbers up to 2^53 exactly.
 inline constexpr std::uint64_t kMostWhole = std::uint64_t{1} << 53;
 
 }  // namespace graze

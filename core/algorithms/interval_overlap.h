@@ -35,8 +35,8 @@ GRAZE_HD Line<Real> common_line(const Plane<Real>& p, const Plane<Real>& q, cons
   return {{-sum.x, -sum.y, -sum.z}, normalised(direction)};
 }
 
-// The vertex that the interval formula needs last. It is the vertex that is alone on its side, or a vertex on the line.
-// But if the other two are on opposite sides, the vertex on the line must not be last.
+// The vertex that the interval formula needs last: the vertex that is alone on its side, or a vertex on the line. But a
+// vertex on the line must not be last if the other two are on opposite sides.
 // Reference: Maffina 2012, section 3.2.3 and figure 3.5.
 template <class Real>
 GRAZE_HD int vertex_to_put_last(const Real (&distance)[3]) {
@@ -91,7 +91,7 @@ struct IntervalOverlap {
       "interval_overlap",
       "Maffina 2012, final version (section 3.2), after Moller and Haines",
       "when the normals' cross product is exactly zero: 2D separating axes on the first plane",
-      "should be handled first, says the text; the published code does not",
+      "the text says to handle them first; the published code does not",
       "changes rounding, and the plane onto which coplanar pairs are projected",
       false};
 

@@ -14,7 +14,7 @@ struct ProjectedSat {
   static constexpr AlgorithmInfo kInfo{"projected_sat",
                                        "Maffina 2012, first version (section 3.1)",
                                        "the projections' 2D test decides",
-                                       "not mentioned; a zero normal divides by zero",
+                                       "not mentioned; a zero normal causes division by zero",
                                        "matters: projects onto the first triangle's plane",
                                        false,
                                        false};

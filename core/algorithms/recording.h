@@ -19,7 +19,7 @@ struct Recorded {
   std::uint64_t stride;
 };
 
-// `asked` has one bit for each question that was asked. Bits 4 k to 4 k + 3 of `path` hold 1 + choice k, and bits 60
+// Bit q of `asked` is set if question q was asked. Bits 4 k to 4 k + 3 of `path` hold 1 + choice k, and bits 60
 // to 63 hold 1 + the verdict.
 struct RecordedPath {
   std::uint64_t asked = 0, path = 0;

@@ -13,7 +13,7 @@ struct SeparatingAxes {
   static constexpr AlgorithmInfo kInfo{"separating_axes",
                                        "Gottschalk, Lin, Manocha 1996; Schneider and Eberly 2002, section 7.7",
                                        "the in-plane edge normals separate",
-                                       "not mentioned; zero axes never separate, so degenerate pairs lack axes",
+                                       "not mentioned; zero axes never separate, so degenerate pairs have too few axes",
                                        "changes rounding",
                                        true};
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbers and a policy that record an algorithm's comparisons and the values that it passes to the policy, each with
-// its source line. They can also force the outcomes of comparisons, so that the algorithm takes a given path.
+// its source line. These numbers can also force the outcomes of comparisons, so that the algorithm takes a given path.
 #pragma once
 
 #include <cmath>
@@ -103,10 +103,10 @@ struct Recorder {
   }
 };
 
-// `none`: every operation rounds. Otherwise a sum or difference fuses a product with the addition. If both terms are
-// products, `left` fuses the left one, like g++ if it contracts. `nvcc` fuses the one with fewer uses, or the left one
-// on a tie, like cuda/twin/generator/contraction.cpp. It fuses neither if both multiply by a quotient: nvcc moves that
-// addition to another block (only in interval_overlap's common_line). The rules can be wrong: compare with the lane.
+// `none`: every operation rounds. `left`, `nvcc`: a sum or difference fuses a product with the addition. If both terms
+// are products, `left` fuses the left one, as g++ does; `nvcc` fuses the one with fewer uses, or the left one on a tie,
+// as in cuda/twin/generator/contraction.cpp. `nvcc` fuses neither if both multiply by a quotient: nvcc moves such an
+// addition to another block (only in interval_overlap's common_line). These rules can be wrong: compare with the lane.
 enum class Contraction { none, left, nvcc };
 
 inline namespace GRAZE_FP {
@@ -203,7 +203,7 @@ struct Traced {
   }
 };
 
-// A policy that compares exactly, like ExactZero, and records what it is asked.
+// A policy that compares exactly, like ExactZero, and records every question.
 struct TracingPolicy {
   template <class Number, Contraction contraction>
   Traced<Number, contraction> snap(Site site, const Traced<Number, contraction>& n,

@@ -39,7 +39,7 @@ namespace certified {
 // Rounds up a sum of a few nonnegative terms.
 GRAZE_HD inline double up(double bound) { return bound * (1 + 0x1p-48); }
 
-// Bound on the part of a product's error that underflows. It is zero if a factor is zero.
+// Bound on the part of a product's error that underflows; zero if a factor is zero.
 GRAZE_HD inline double lost_below(double product, double x, double y) {
   return x != 0 && y != 0 && !(fabs(product) >= 0x1p-900) ? 0x1p-1060 : 0;
 }

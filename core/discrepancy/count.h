@@ -87,7 +87,7 @@ GRAZE_HD constexpr int value_at(int question, int which) {
 GRAZE_HD constexpr int counts_of(int questions) { return question_at(questions); }
 
 // The largest magnitude at which a question's sign differs: in multiples of the error bound, and as a length in
-// coordinate units. It is stored as the bits of a nonnegative double, which are ordered like integers.
+// coordinate units. Each maximum is stored as the bits of a nonnegative double, which are ordered like integers.
 namespace band_maxima {
 enum : int { in_bounds, length, kFields };
 }
@@ -125,7 +125,7 @@ GRAZE_HD int order_of(Real x, Real y) {
   return x < y ? -1 : x > y ? 1 : x == y ? 0 : 2;
 }
 
-// Whether `left < right` (or `left <= right`, if at_most) has different answers for the two orders.
+// Whether two results of order_of imply different answers to `left < right` (or to `left <= right`, if at_most).
 GRAZE_HD inline bool answers_otherwise(int order, int other, bool at_most) {
   const bool yes = order == -1 || (at_most && order == 0), other_yes = other == -1 || (at_most && other == 0);
   return yes != other_yes;
@@ -223,8 +223,8 @@ struct Run {
   }
 };
 
-// Sink: add(index) adds 1 to a count, and most(question, which, size) keeps the largest size. degrees: the unit of each
-// question's values is a length to this power.
+// Sink: add(index) adds 1 to a count, and most(question, which, size) keeps the largest size. degrees: the values of
+// question q have the unit length^degrees[q].
 template <class Real, class Sink>
 class PairComparison {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs an algorithm on certified numbers along the path of a lane's recorded run: every comparison and every choice has
-// the lane's result. Each value is therefore the one that the lane would have computed without rounding. It also
+// the lane's result. Each value is therefore the one that the lane would have computed without rounding, and
 // carries a bound on the error that rounding can cause.
 // Reference: N. J. Higham, Accuracy and Stability of Numerical Algorithms, second edition (2002), section 3.3: running
 // error analysis, extended here by second-order terms, underflow and overflow.
@@ -26,7 +26,7 @@ struct Unrounded {
   double rounding = 0;
 };
 
-// A certified number. If the lane compared it (`was_seen`), it also has the lane's value, which decides comparisons.
+// A certified number and, if the lane compared it (`was_seen`), the lane's value, which then decides comparisons.
 template <class Real>
 struct Led {
   Certified exact;
@@ -106,9 +106,9 @@ struct Led {
   GRAZE_HD static double size_of(const Certified& x) { return certified::above(x) + x.bound; }
   GRAZE_HD bool is_zero() const { return exact.is_exactly_zero() && rounding == 0; }
 
-  // Values that the lane did not record, such as the least of several distances, are compared exactly. If their order
-  // is in doubt, the wrong choice is off by at most the distance between them. The lane may have chosen the other
-  // value, so both get the larger `rounding`, which then also holds for their minimum or maximum.
+  // Values that the lane did not record, such as the least of several distances, are compared exactly. If the order
+  // of two such values is in doubt, choosing the wrong one causes an error of at most their distance. The lane may have
+  // chosen the other one, so both values get the larger `rounding` of the two, which then holds for the chosen one.
   template <class Comparison>
   GRAZE_HD GRAZE_CALLED static bool compare(const Led& l, const Led& r, const Comparison& comparison) {
     if (l.was_seen && r.was_seen) return comparison(l.lane, r.lane);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The decision by axes: separating axes of the Minkowski difference of a and b. It handles proper, coplanar and
-// degenerate pairs alike, and also finds the contact, the margin's sign and the hulls.
+// The decision by axes: separating axes of the Minkowski difference of a and b. This decision handles proper, coplanar
+// and degenerate pairs alike, and also finds the contact, the margin's sign and the hulls.
 // Reference for the theorem: Gottschalk, Lin and Manocha 1996 (OBBTree).
 #pragma once
 

@@ -22,7 +22,7 @@ GRAZE_HD T component(const Vec<T>& v, unsigned axis) {
   return pick(v.x, v.y, v.z, axis);
 }
 
-// A vertex projected along an axis. If the normal's component along that axis is positive, the triangle turns left.
+// A vertex projected along an axis. A triangle turns left if its normal's component along the axis is positive.
 template <class D>
 struct Flat {
   D x, y;
@@ -33,8 +33,8 @@ GRAZE_HD Flat<D> flatten(const Vec<D>& v, unsigned axis) {
   return {component(v, axis == 2 ? 0 : axis + 1), component(v, axis == 0 ? 2 : axis - 1)};
 }
 
-// Whether some edge of p has all of q strictly on its outer side. `left` tells which way p turns. A segment's edges run
-// both ways, so either value works.
+// Whether some edge of p has all of q strictly on its outer side. `left` tells which way p turns. A segment has edges
+// in both directions, so for a segment either value works.
 template <class Numbers, class D>
 GRAZE_HD bool edge_parts(const Flat<D> (&p)[3], bool left, const Flat<D> (&q)[3]) {
   bool parts = false;
@@ -80,7 +80,7 @@ GRAZE_HD bool segments_meet(const Triangles<Numbers>& t) {
   const VecOf<Numbers> of_a = along(t.a), of_b = along(t.b), between = t.b[0] - t.a[0];
   const NormalOf<Numbers> n = cross<M>(of_a, of_b);
   if (!is_zero(n)) return dot<typename Numbers::T>(n, between) == typename Numbers::T(0) && meet_in_plane(t, n, n, n);
-  // The segments are parallel, or one is a point. If one line holds both, they meet if their coordinate ranges overlap.
+  // The segments are parallel, or one is a point. On one line, they meet if their ranges overlap in each coordinate.
   const bool a_is_point = same(t.a[1], t.a[0]) && same(t.a[2], t.a[0]);
   if (!is_zero(cross<M>(a_is_point ? of_b : of_a, between))) return false;
   for (unsigned axis = 0; axis < 3; ++axis) {
@@ -172,7 +172,7 @@ GRAZE_HD bool decide_unsure(const Real* a, const Real* b, Stage& stage) {
 template <class Real>
 GRAZE_HD bool relation_of(Finding found, const Real* a, const Real* b, Relation& r) {
   r = found == Finding::crosses ? Relation{Verdict::intersects, Contact::segment, -1, {}} : Relation{};
-  // A nonzero determinant separates the triangles, so they are not coplanar.
+  // If proper triangles are found disjoint, a determinant is nonzero, so the triangles are not coplanar.
   return found == Finding::crosses || (found == Finding::disjoint && both_proper(a, b));
 }
 

@@ -19,8 +19,8 @@ namespace graze::exact::detail {
 inline constexpr double kDeterminantError = 8 * 0x1p-53;
 
 // Bounds for pairs of doubles hold up to this extent, because nothing overflows there. If a product of two differences
-// underflows, it is off by at most 2^-1075. This adds less than 6 * 2^-1075 * (2^300 + 1) < 2^-771 to a determinant's
-// error, and less than 2^-1073 to a minor's. Underflow in the computation of the bounds adds less than that.
+// underflows, it is off by at most 2^-1075, which adds less than 6 * 2^-1075 * (2^300 + 1) < 2^-771 to the error of a
+// determinant, and less than 2^-1073 to that of a minor. Underflow in computing the bounds themselves adds less.
 inline constexpr double kMostExtent = 0x1p300, kDeterminantUnderflow = 0x1p-700, kMinorUnderflow = 0x1p-1000;
 
 // Whether nothing over- or underflows in determinants of coordinates on this grid: differences are zero or lie between

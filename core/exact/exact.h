@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact triangle-triangle intersection for input in float32 or double, on host and device. It takes closed triangles,
-// segments and points that cross, touch, are coplanar, or share vertices or edges, with any finite coordinates,
-// including subnormals and 1e308. It needs only the C++ standard library and a compiler with 128-bit integers (GCC,
-// Clang, nvcc).
+// Exact triangle-triangle intersection for input in float32 or double, on host and device. Triangles are closed, may be
+// segments or points, and may cross, touch, be coplanar, or share vertices or edges, with any finite coordinates,
+// including subnormals and 1e308. This header needs only the C++ standard library and a compiler with 128-bit integers
+// (GCC, Clang, nvcc).
 //
 // Method: two decisions, written as templates over a kind of numbers. Numbers that are not always exact report when
 // they are not.
@@ -12,8 +12,8 @@
 //                coplanar and degenerate pairs alike.
 //   numbers.h    doubles with an error bound (Shewchuk 1997), doubles where nothing rounds, and integers of 128 bits
 //                and more, with the widths that each kind holds.
-// The filter comes first. If it is unsure, a pair with a shared vertex intersects; any other pair goes to the smallest
-// kind of exact numbers that holds its grid (decision.h).
+// The filter comes first. Among the pairs that the filter leaves open, those with a shared vertex intersect; each other
+// pair goes to the smallest kind of exact numbers that holds the pair's grid (decision.h).
 #pragma once
 
 #include "core/exact/by_axes.h"

@@ -392,7 +392,7 @@ TEST(Exact, ResiduesKnowTheirSigns) {
   }
 }
 
-// Tests the bounds that error_bound.h derives. No pair in the other tests comes near them.
+// Tests the bounds that error_bound.h derives. No pair in the other tests comes near these bounds.
 TEST(ErrorBound, IsShewchuksAndNoMoreThanAFewPercentAbove) {
   const double e = 0x1p-53, stage_a = (7 + 56 * e) * e;
   EXPECT_GE(detail::kDeterminantError, stage_a);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filter has a version with SSE2 and one without. Both must return the same correct finding for every pair.
+// The filter has an SSE2 version and a portable one. Both versions must return the same correct finding for every pair.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ Coordinates extreme_pair(Random& random) {
   return draw(random, [&] { return std::ldexp(uniform(random), exponent); });
 }
 
-// b[0] lies on a's face up to rounding, or b's first edge crosses a's. Determinants are near their error bound.
+// Up to rounding, b[0] lies on a's face, or b is a segment across a's first edge. Determinants are near their bounds.
 Coordinates near_pair(Random& random) {
   Coordinates c = uniform_pair(random);
   const float s = std::abs(uniform(random)) / 2, t = random() % 2 == 0 ? 0 : std::abs(uniform(random)) / 2;

@@ -25,7 +25,7 @@ GRAZE_HD Answer line_crosses(const VecOf<Numbers>& from, const VecOf<Numbers>& t
   return left && right ? Answer::no : open ? Answer::unknown : Answer::yes;
 }
 
-// Whether the part of p in q's plane lies in q. The part ends where edges of p reach the plane.
+// Whether the part of p in q's plane lies in q. That part ends where edges of p reach the plane.
 // Requires: p reaches the plane of q and does not lie in it.
 template <class Numbers>
 GRAZE_HD Answer cut_inside(const VecOf<Numbers> (&p)[3], const Sides& of_p, const VecOf<Numbers> (&q)[3],

@@ -9,8 +9,8 @@
 
 namespace graze {
 
-// a_in_b, coplanar: all of a lies in b, boundary included. a_in_b, otherwise: two proper triangles meet in a segment,
-// the part of a in b's plane lies in b, and the part of b in a's plane does not lie in a. same: coplanar and equal.
+// a_in_b, if coplanar: all of a lies in b, boundary included; if not: two proper triangles meet in a segment, the part
+// of a in b's plane lies in b, and the part of b in a's plane does not lie in a. same: coplanar and equal.
 enum class Nesting : std::uint8_t { none, a_in_b, b_in_a, same };
 
 // Packs relation and nesting into nine bits.   Requires: a known contact.

@@ -92,7 +92,7 @@ struct NumberKinds {
 
   GRAZE_HD static bool hold(const Grid& grid) { return (Kind::holds(grid) || ... || Larger::holds(grid)); }
 
-  // Calls visit(kind) with the first kind that holds the grid. The last kind is not tested, because it must hold it.
+  // Calls visit(kind) with the first kind that holds the grid. The last kind needs no test, because hold(grid) is true.
   // Requires: hold(grid).   Returns: the result of visit.
   template <class Visit>
   GRAZE_HD static auto visit(const Grid& grid, const Visit& visit) {

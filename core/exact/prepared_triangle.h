@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One triangle (the reference) prepared for tests against many: its box, and two slabs that contain it, each between
-// two parallel planes. A triangle beyond a slab is disjoint. This test, in floats, certifies most disjoint triangles.
+// two parallel planes. A triangle beyond a slab is disjoint. This test, in floats, rejects most disjoint triangles.
 // The other triangles go to a filter in floats, and then to the filter of core/exact/filter.h.
 //
 // The slabs are the thinnest ones: perpendicular to the triangle's normal and, within its plane, to its longest edge.
@@ -90,9 +90,9 @@ inline Slab slab_along(const Vec<double>& direction, const float* v, bool rounde
 
 }  // namespace detail
 
-// If the reference is not finite, no slab certifies anything and the filter in floats is unsure.
+// If the reference is not finite, no slab rejects a triangle and the filter in floats is unsure.
 // rounded: the coordinates were rounded to float32, both those of the reference and those of the triangles that
-// is_beyond takes. The slabs then certify the triangles before rounding, and the filter in floats does not apply.
+// is_beyond takes. A rejected triangle is then disjoint even before rounding; the filter in floats does not apply.
 inline PreparedTriangle prepare(const float* v, bool rounded = false) {
   using Direction = detail::Vec<double>;
   PreparedTriangle r;
@@ -132,7 +132,7 @@ inline PreparedTriangle prepare(const double* v) {
   return prepare(seen, true);
 }
 
-// The sum of the triangle's nine magnitudes. It is not finite if a magnitude is not, or if the sum overflows.
+// The sum of the triangle's nine magnitudes. The sum is not finite if a magnitude is not, or if it overflows.
 GRAZE_HD inline float size_of(const float* t) {
   float sum = detail::magnitude(t[0]);
   for (int i = 1; i < 9; ++i) sum += detail::magnitude(t[i]);

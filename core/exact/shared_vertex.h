@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles that share a vertex, as neighbours in a mesh do. They always intersect, whatever is rounded.
+// Triangles that share a vertex, as neighbours in a mesh do. They always intersect; rounding cannot change that.
 #pragma once
 
 #include "core/exact/error_bound.h"

@@ -19,7 +19,7 @@ struct Sides {
 
   // The vertex that is alone on its side; the others are on the other side or in the plane. Bit tables replace
   // branches, which would be mispredicted.
-  // Requires: known; not one_side; not all in the plane.   Returns: its index; `over` is 1 if its side is below.
+  // Requires: known; not one_side; not all in the plane.   Returns: the vertex's index. over: 1 if its side is below.
   GRAZE_HD constexpr unsigned alone(unsigned& over) const {
     if (in == 0) {  // tables with two bits, or one, for each of the eight values of `above`
       over = 0x68u >> above & 1;

@@ -32,7 +32,7 @@ GRAZE_HD bool is_zero(const Vec<T>& v) {
   return v.x == T(0) && v.y == T(0) && v.z == T(0);
 }
 
-// Element i of three. It does not index, because on a device that would move all three from registers to memory.
+// Element i of three, without indexing, which on a device would move all three from registers to memory.
 template <class T>
 GRAZE_HD T pick(const T& x, const T& y, const T& z, unsigned i) {
   return i == 0 ? x : i == 1 ? y : z;

@@ -75,7 +75,7 @@ struct Wide {
     return turn ? -product : product;
   }
 
-  // Multiplies l and r as unsigned numbers. A negative r then counts as r + 2^64; `less` corrects this.
+  // Multiplies l and r as unsigned numbers. A negative r then counts as r + 2^64, so `less` is subtracted.
   GRAZE_HD friend Wide operator*(const Wide& l, std::int64_t r) {
     Wide product;
     std::uint64_t carry = 0, borrow = 0;

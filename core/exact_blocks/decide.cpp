@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// This file is compiled for each instruction set with Google Highway, which chooses the best one at run time. Some
-// instruction sets contract, so they may round differently. Decisions beyond the error bound do not depend on rounding;
+// This file is compiled for each instruction set with Google Highway, which chooses the best one at run time. For some
+// sets the code is contracted and may round differently. Decisions beyond the error bound do not depend on rounding;
 // all other decisions are exact.
 #ifdef __wasm__
 #include "core/exact_blocks/one_by_one.h"

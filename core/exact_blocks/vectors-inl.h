@@ -6,8 +6,8 @@
 //                 in DoubleDouble (doubles-inl.h)
 //   share_vertex  like core/exact/shared_vertex.h
 //   separated     the decision by axes, like core/exact/by_axes.h, on numbers whose signs are exact: Double where
-//                 nothing rounds, otherwise DoubleAndInteger. The latter stores each number as a nearby double and as
-//                 a 64-bit integer, which is the number modulo 2^64. If the double is small, the integer is the
+//                 nothing rounds, otherwise DoubleAndInteger, which stores each number as a nearby double and as a
+//                 64-bit integer, which is the number modulo 2^64. If the double is small, the integer is the
 //                 number.
 
 constexpr std::size_t kNumbers = 18;  // coordinates of a pair
@@ -147,7 +147,7 @@ struct Turned {
   Three<Double> first, second, third;
 };
 
-// below: which vertices are below the other triangle's plane; not all of them, and at least one.
+// below: which vertices are below the other triangle's plane: one or two of them.
 HWY_INLINE Turned turned(const Three<Double> (&v)[3], const M (&below)[3], M other_is_below) {
   const M apart_01 = hn::Xor(below[0], below[1]), apart_02 = hn::Xor(below[0], below[2]);
   const M is_1 = hn::AndNot(apart_02, apart_01), is_2 = hn::AndNot(apart_01, apart_02);
@@ -157,7 +157,7 @@ HWY_INLINE Turned turned(const Three<Double> (&v)[3], const M (&below)[3], M oth
           chosen(other_is_below, next, last)};
 }
 
-// Whether the lone vertex is below. The other two, on the other side, cancel.   Requires: not all on the same side.
+// Whether the lone vertex is below. The equal bits of the other two cancel.   Requires: not all on the same side.
 HWY_INLINE M alone_is_below(const M (&below)[3]) { return hn::Xor(hn::Xor(below[0], below[1]), below[2]); }
 
 // The difference of two vertices, in this kind of numbers.
@@ -253,8 +253,8 @@ struct OnGrid {
     // The scale depends on the largest coordinate, or on this number if all coordinates are smaller.
     auto largest = hn::Set(pairs.tag, sizeof(Real) == sizeof(float) ? Real(0x1p-126) : Real(0x1p-900));
     for (const auto& c : pairs.x) largest = hn::Max(largest, hn::Abs(c));
-    // Scales the largest value into [2^(bits_of_grid - 1), 2^bits_of_grid). If its exponent is e, the scale is
-    // 2^(bits_of_grid - 1 - e).
+    // Scales the largest value into [2^(bits_of_grid - 1), 2^bits_of_grid). If that value's exponent is e,
+    // the scale is 2^(bits_of_grid - 1 - e).
     const VI exponent = hn::And(hn::BitCast(di, widened(largest)), hn::Set(di, std::int64_t{0x7ff} << 52));
     const V scale = hn::BitCast(d, hn::Sub(hn::Set(di, std::int64_t{2 * 1023 + bits_of_grid - 1} << 52), exponent));
     M whole = hn::Eq(scale, scale);
@@ -280,7 +280,7 @@ struct Ends {
   }
 };
 
-// Whether some axis separates the triangles. An axis does if all differences along it have the same sign.
+// Whether some axis separates the triangles. An axis separates them if all differences along it have the same sign.
 struct Axes {
   M separated;
   V least, most;  // the least and the greatest difference along all axes

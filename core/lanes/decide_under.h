@@ -20,7 +20,7 @@ GRAZE_HD Verdict decide_within(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3
   return Algorithm::decide(p, q, tolerances);
 }
 
-// Whether the triangle certainly has a nonzero area. Published algorithms promise nothing for other triangles.
+// Whether the triangle certainly has a nonzero area. Published algorithms promise nothing for triangles without area.
 template <class Real>
 GRAZE_HD bool certainly_proper(const Vec3<WithErrorBound<Real>> (&v)[3]) {
   const Vec3<WithErrorBound<Real>> normal = cross(v[1] - v[0], v[2] - v[0]);

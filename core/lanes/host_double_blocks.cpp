@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Block functions for pairs of doubles, for the host lanes in double. Compiled once per variant like host_blocks.cpp.
-// They are in a separate file because fast-math results depend on what else the compiler sees: in the same file, lanes
-// on float32 pairs would give other verdicts. Define nothing else here.
+// These functions have a separate file because fast-math results depend on what else the compiler sees: in one file
+// with them, lanes on float32 pairs would give other verdicts. Define nothing else here.
 #include "core/algorithms/algorithms.h"
 #include "core/decide_each.h"
 #include "core/lanes/decide_under.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recording runs of the host lanes in double on pairs of doubles, compiled once per variant. They are in a separate
-// file because contraction depends on what else the compiler sees: in the same file, lanes on float32 pairs could
-// compute other values. Define nothing else here.
+// Recording runs of the host lanes in double on pairs of doubles, compiled once per variant. These runs have a
+// separate file because contraction depends on what else the compiler sees: in one file with them, lanes on float32
+// pairs could compute other values. Define nothing else here.
 #include "core/algorithms/recording.h"
 #include "core/lanes/host_blocks.h"
 

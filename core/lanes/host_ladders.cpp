@@ -12,7 +12,7 @@ namespace graze {
 inline namespace GRAZE_FP {
 
 // Decides like rung `at`, and finds the next rung on which some comparison of this decision has a different outcome. On
-// all rungs before that one, all outcomes and therefore the verdict are the same.
+// the rungs in between, all outcomes and therefore the verdict are the same.
 template <class Real>
 class Climb {
  public:
@@ -34,7 +34,7 @@ class Climb {
     return false;
   }
 
-  // These work like the members of Tolerances.
+  // The functions of a policy, with the same results as in Tolerances.
   template <class Number>
   Number snap(Site site, const Number& x) const {
     return near_zero(site, x) ? Number(0) : x;

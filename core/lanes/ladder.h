@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides with one lane under many tolerances, for sweeps. A pair is decided again only if a comparison changes.
+// Decides with a lane under many tolerances, for sweeps. A pair is decided anew only if a comparison's outcome changes.
 #pragma once
 
 #include <cstddef>

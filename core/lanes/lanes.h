@@ -33,10 +33,10 @@ struct LaneName {
 // "moller_1997/f32/cpu"; the inverse of parse_lane_name.
 std::string id_of(const LaneName& name);
 
-// Returns: nothing unless there are three or four nonempty parts. The fourth may contain slashes.
+// Returns: nothing unless there are three or four nonempty parts. The fourth part may contain slashes.
 std::optional<LaneName> parse_lane_name(std::string_view id);
 
-// Code that is not ours (subjects/). If it fails on a pair, both bits of the pair are set.
+// Code that is not ours (subjects/). If the code fails on a pair, both bits of the pair are set.
 class ForeignCode {
  public:
   virtual ~ForeignCode() = default;
@@ -57,7 +57,7 @@ template <class AnyPair>
 using DecideWithin = void (*)(const Epsilons& epsilons, const AnyPair* pairs, std::size_t count,
                               std::uint64_t* intersects, std::uint64_t* declined);
 
-// A lane's functions for pairs of one coordinate type. All are null if the lane does not take such pairs.
+// A lane's functions for pairs of one coordinate type; all null if the lane does not take such pairs.
 template <class AnyPair>
 struct DecideFunctions {
   DecideFunction<AnyPair> function = nullptr;
@@ -180,7 +180,7 @@ const Lane* counterpart(const Lane& lane, Variant variant);
 bool runs_on_this_cpu(const Lane& lane);
 
 // Whether the id matches a shell pattern (fnmatch) and no pattern after a `!`. If all patterns begin with `!`, or there
-// are none, only the second condition applies.
+// are none, every id matches that no pattern excludes.
 bool matches_any(const std::vector<std::string>& globs, std::string_view id);
 
 }  // namespace graze

@@ -40,7 +40,7 @@ Pair apart(float scale) {
   return scaled({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0.5f}, {1, 0, 0.5f}, {0, 1, 0.5f}}}, scale);
 }
 
-// b stands upright above a. Its lowest vertex is above a's interior, at a height of 2^-k times their size.
+// b stands upright above a. The lowest vertex of b is above a's interior, at a height of 2^-k * scale.
 Pair above(int k, float scale) {
   const float gap = std::ldexp(1.0f, -k);
   return scaled({{{0, 0, 0}, {3, 0, 1}, {0, 3, 1}}, {{0.75f, 0.75f, 0.5f + gap}, {1, 2, 4}, {2, 1, 4}}}, scale);
@@ -108,7 +108,7 @@ TEST(Policies, AddLanesOnceForEachThatMatches) {
   EXPECT_EQ(added.policy, "rel:7");
   EXPECT_EQ(added.under->epsilons.relative[static_cast<int>(Site::separation)], 7);
   EXPECT_FALSE(added.exact);
-  // Four of the five algorithms have this policy.
+  // Four of the five algorithms have the policy `bound`.
   add_policy_lanes("*/f64/cpu-fma/bound");
   EXPECT_NE(find_lane("moller_1997/f64/cpu-fma/bound"), nullptr);
   EXPECT_EQ(find_lane("projected_sat/f64/cpu-fma/bound"), nullptr);

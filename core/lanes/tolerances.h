@@ -37,7 +37,7 @@ struct Tolerances {
     }
   }
 
-  // The comparison is strict, as in published code: |x| < epsilon. It is false for NaN.
+  // The comparison is strict, as in published code: |x| < epsilon. NaN is not near zero.
   GRAZE_HD bool near_zero(Site site, const Real& x) const { return magnitude(x) < absolute[static_cast<int>(site)]; }
   GRAZE_HD bool near_zero(Site site, const WithMagnitude<Real>& x) const {
     const int s = static_cast<int>(site);

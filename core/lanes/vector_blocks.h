@@ -6,9 +6,9 @@
 
 namespace graze {
 
-// A vectorised block function for a `cpu` lane; null if there is none. It performs the same operations on each pair in
-// the same order as the lane's algorithm, so its verdicts are the same. It uses AVX-512 or AVX2, and otherwise decides
-// one pair at a time.
+// A vectorised block function for a `cpu` lane; null if there is none. The function performs the same operations on
+// each pair in the same order as the lane's algorithm, so its verdicts are the same. It uses AVX-512 or AVX2; without
+// both, it decides one pair at a time.
 DecideBlock::Function vector_block(std::string_view algorithm, Scalar scalar);
 
 }  // namespace graze

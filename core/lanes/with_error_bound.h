@@ -123,8 +123,8 @@ struct WithErrorBound {
     return result;
   }
 
-  // Whether the exact quantities have the same order as their values. For equal values, both must be exact. Other
-  // values must differ by more than their bounds and the rounding here.
+  // Whether the exact quantities certainly have the same order as their values: both values are exact, or they differ
+  // by more than their bounds and the rounding in this function.
   GRAZE_IN_PLACE GRAZE_HD static bool is_settled(const WithErrorBound& x, const WithErrorBound& y) {
     const Real gap = magnitude(x.value - y.value), errors = (x.error + y.error) * kSlack;
     return (gap * (Real(1) - 4 * kUnit) > errors + kTiny && gap <= kLargest) ||
@@ -149,7 +149,7 @@ GRAZE_HD int dominant_axis(const Vec3<WithErrorBound<Real>>& v) {
 }
 
 // The least of three exact quantities differs from the least of their values by at most the largest of the bounds, even
-// if it belongs to another value. The same holds for the greatest.
+// if the least quantity and the least value belong to different vertices. The same holds for the greatest.
 template <class Real>
 GRAZE_HD Range<WithErrorBound<Real>> project(const Vec3<WithErrorBound<Real>>& direction,
                                              const Vec3<WithErrorBound<Real>> (&v)[3]) {

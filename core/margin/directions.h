@@ -26,7 +26,7 @@ inline namespace GRAZE_FP {
 
 // The vertices to project on an axis, relative to the feature that it is perpendicular to. That feature projects to
 // zero. Axis of two edges: seen[0] is a's third vertex; seen[1] and seen[2] stand for b. Normal of a face:
-// all three are the other triangle's vertices.   Returns: how many of them are in the feature's own triangle.
+// all three are the other triangle's vertices.   Returns: how many of these vertices are in the feature's triangle.
 template <class Real>
 GRAZE_HD int seen_from_axis(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], int axis, Vec3<Real> (&seen)[3]) {
   if (axis >= kNormalA) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certified bounds on the distance between disjoint triangles, from a guess of their nearest features. They hold for
-// any guess, and are tight if the guess is correct.
+// Certified bounds on the distance between disjoint triangles, from a guess of their nearest features. The bounds
+// hold for any guess, and are tight if the guess is correct.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certified double-precision bounds on a pair's margin, given its verdict. They nearly always decide its bucket.
+// Certified double-precision bounds on a pair's margin, given its verdict. The bounds nearly always decide the bucket.
 #pragma once
 
 #include "core/margin/bucket.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certified bounds on the depth of intersecting triangles, in double. They use all axes, or only the axes that single
+// Certified bounds on the depth of intersecting triangles, in double, from all axes or only from the axes that single
 // precision leaves as candidates for the least overlap.
 #pragma once
 
@@ -40,8 +40,8 @@ GRAZE_HD Overlap<Real> overlap_along(const Corners<Real>& a, const Corners<Real>
 constexpr float kUp = 1 + 0x1p-19f, kDown = 1 - 0x1p-19f;
 
 // u is the unit roundoff. A projection on an axis is a determinant of three differences, so the bound of
-// core/exact/error_bound.h holds for it. Two projections and a rounding make an overlap: 2 * 6 * 8 + 2. A component of
-// an axis is off by (3 + 1) u times two products.
+// core/exact/error_bound.h holds for it. An overlap has the errors of two projections and a rounding: 2 * 6 * 8 + 2. A
+// component of an axis is off by (3 + 1) u times two products.
 template <class Real>
 struct AxisErrors {
   Real overlap;
@@ -90,7 +90,7 @@ GRAZE_HD void for_each_axis(const Corners<Real>& a, const Corners<Real>& b, cons
   visit(kNormalB, overlap_along(b, a, false));
 }
 
-// lo <= depth <= hi. Single precision rules out axes; the others are computed in double. If too many remain, lo is 0.
+// lo <= depth <= hi. Single precision rules out axes; the rest are computed in double, or lo is 0 if too many remain.
 GRAZE_HD inline void depth_in_single(const Corners<float>& a, const Corners<float>& b, const Vec3<float>& extent,
                                      float& lo, float& hi) {
   const AxisErrors<float> errors(extent * 1.0001f, 0x1p-24);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two quick attempts to find a pair's margin bucket. They are certified like core/margin/margin.h and much cheaper, but
-// leave more pairs undecided. They are written for GPUs, where double precision, roots and quotients are slow. Disjoint
+// Two quick attempts to find a pair's margin bucket, for GPUs, where double precision, roots and quotients are slow.
+// The bounds are certified, as in core/margin/margin.h, and much cheaper, but leave more pairs undecided. Disjoint
 // triangles: the nearest features are guessed, and only the guess is certified. Intersecting triangles: single
 // precision finds the axes that may have the least overlap, and only these are computed in double.
 #pragma once
@@ -36,8 +36,8 @@ GRAZE_HD inline bool fits_single(const Vec& extent) {
 }
 
 GRAZE_HD inline bool bucket_of(const MarginBounds& bounds, Verdict verdict, int log2_ulp, Bucket& bucket) {
-  // Differences of scaled coordinates may be as small as 2^-277. Squared lengths do not underflow, but larger products
-  // may. Then lo is not a bound, but it is not between 0 and the connection's length either, so the result is false.
+  // Differences of scaled coordinates may be as small as 2^-277. Squared lengths do not underflow, but products of
+  // more factors may. Such a lo is not a bound, but it is not in (0, hi] either, so the result is false.
   return bounds.lo > 0 && bounds.lo <= bounds.hi && bounds.hi < INFINITY &&
          bucket_from_bounds(bounds, verdict, log2_ulp, bucket);
 }

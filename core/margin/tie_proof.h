@@ -57,7 +57,7 @@ GRAZE_HD Vector<Big> direction(const Vector<Big> (&a)[3], const Vector<Big> (&b)
 // Whether the disjoint triangles are at least 2^exponent apart along direction d (of core/margin/directions.h). Bits on
 // the grid of floats: coordinates at most kIntBits = 40, a direction 3 * 41 + 4, the gap along it 170, its square 340
 // of 512. For doubles: coordinates at most kMediumBits = 61, a direction 3 * 62 + 4, the gap along it 254, its square
-// 508, shifted by 400, of 1024. Returns: false if not, or if the numbers are too large to tell.
+// 508, shifted by 400, of 1024. Returns: false also if the numbers are too large to tell.
 template <class Real>
 GRAZE_HD bool are_apart_by(const Real* a, const Real* b, int d, int exponent) {
   using namespace tie_proof;

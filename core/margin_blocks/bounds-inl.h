@@ -161,7 +161,7 @@ HWY_INLINE Bounds distance_bounds(const Frame& f) {
   const Vector normal = accurate_cross(u, v), perpendicular = accurate_cross(accurate_cross(u, from), u);
   const V n2 = dot(normal, normal), u2 = dot(u, u);
 
-  // The connection is from + s u + t v, with s and t in [-1, 0]; for two edges t is in [0, 1].
+  // The connection is the vector `from + s u + t v` with s and t in [-1, 0], but t in [0, 1] for two edges.
   const V along = hn::IfThenElse(edge, dot(from, u), dot(quick_cross(from, v), normal)),
           whole = hn::IfThenElse(edge, u2, n2);
   const V beside = hn::IfThenElse(edges, dot(quick_cross(from, u), normal), dot(quick_cross(u, from), normal));

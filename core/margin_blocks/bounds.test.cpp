@@ -127,8 +127,8 @@ TEST(MarginBounds, OfADepthAreSeenFromTheFirstVertexOfAFace) {
   }
 }
 
-// The cross product of an edge of a with any edge of b points along z. The depth along it, 1, equals that of b's face,
-// and is computed as 4 - 3.
+// The cross product of an edge of a with any edge of b points along z, like b's normal. The depth along z is 1, and
+// is computed as 4 - 3.
 TEST(MarginBounds, OfADepthCountTheErrorOfTheThirdVertex) {
   const Pair pair{{{-8, 0, -3}, {8, 0, -3}, {0, 0, 1}}, {{-8, -8, 0}, {8, -8, 0}, {0, 8, 0}}};
   const MarginBounds bounds = margin_bounds(pair, kMeet);
@@ -150,7 +150,7 @@ TEST(MarginBounds, InVectorsKnowWhichDifferencesAreExact) {
   expect_exact(0x1.000002p-99f, 0x1p-149f, false);
 }
 
-// The disjoint pair is coplanar; with the other pair's verdict it would count as touching.
+// The disjoint pair is coplanar; if it got the other pair's verdict, it would count as touching.
 TEST(MarginBounds, InVectorsLeaveOtherPairsAlone) {
   const Pair pairs[] = {{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 0, 0}, {9, 0, 0}, {5, 4, 0}}}, kUnits[6].pair};
   const std::uint64_t intersects = 2;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Margin buckets of many pairs at once. They are certified like those of core/margin/margin.h and take a fraction of
-// the time, but leave a few pairs undecided.
+// Margin buckets of many pairs at once, certified like those of core/margin/margin.h, in a fraction of the time; a few
+// pairs remain undecided.
 #pragma once
 
 #include <cstddef>

@@ -18,7 +18,7 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  // The pipe's read end. It reaches end of file when the child closes its end.
+  // The pipe's read end. Reads return end of file once the child has closed its end.
   int pipe() const { return pipe_; }
   void kill() const;
   // Waits for the child to end.   Returns: whether it exited with 0.

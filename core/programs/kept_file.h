@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that are built once and kept. A kept file's last line is a checksum of its name and content. The loader of
-// shared objects ignores that line.
+// shared objects ignores a checksum at a file's end.
 #pragma once
 
 #include <filesystem>

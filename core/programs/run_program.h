@@ -25,8 +25,8 @@ class Scratch {
   int lock_ = -1;
 };
 
-// The program's file, found on the PATH as a shell finds it; empty if there is none. An empty PATH entry is the current
-// folder.
+// The program's file, found on the PATH as a shell finds it; empty if there is none. An empty PATH entry means the
+// current folder.
 std::filesystem::path on_path(const std::string& program);
 
 struct Program {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Graze's side of graze-subject-host, the supervisor of programs that graze did not write (see subjects/README.md). Its
-// file is in the folder of the running program.
+// Graze's side of graze-subject-host, the supervisor of programs that graze did not write (see subjects/README.md). The
+// supervisor's file is in the folder of the running program.
 #pragma once
 
 #include <sys/types.h>
@@ -15,14 +15,14 @@ namespace graze {
 // While graze waits, the supervisor sends this one-byte message at least once a second.
 inline constexpr char kAlive = 1;
 
-// A build tool's supervisor reports this instead of an exit status.
+// A build tool's supervisor reports this value in place of an exit status.
 inline constexpr int kTookTooMuchMemory = -2;
 
 // The path of a program that is in the same folder as the running program.
 std::filesystem::path beside_this(const std::string& program);
 
 // Descriptors of the programs that a SupervisorProcess starts; -1 for a missing program. They are opened before any
-// foreign code runs, so that it cannot replace the programs.
+// foreign code runs, so that foreign code cannot replace the programs.
 const std::array<int, 2>& program_files();
 
 class SupervisorProcess {

@@ -165,8 +165,8 @@ void replace_two(const BasicPair<Real>& pair, int first, Pairs<Real>& moved) {
   }
 }
 
-// Subtracts a multiple of one axis from another. The factor is one that makes some vertex's coordinate 0, or the whole
-// number nearest to it.
+// Subtracts a multiple of one axis from another. The factor is a quotient that makes some vertex's coordinate 0, or
+// the whole number nearest to such a quotient.
 template <class Real>
 void shear(const BasicPair<Real>& pair, int axis, int other, Pairs<Real>& moved) {
   for (int v = 0; v < 6; ++v) {

@@ -17,7 +17,7 @@ namespace graze {
 //   4. bits of the mantissas, from the first set bit to the last, summed over all coordinates
 //   5. distances of the exponents from 0, summed over all coordinates
 //   6. different vertices
-//   7. 0 when the first triangle lies in the plane z = 0, 1 when in x = 0 or y = 0, else 2
+//   7. 0 if the first triangle lies in the plane z = 0, 1 if it lies in x = 0 or y = 0, else 2
 //   8. minus signs, that of -0 included
 //   9. the coordinates in order, by magnitude and then sign: two pairs are equal only if all their bits are equal.
 struct Simplicity {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The host's interface to the engine on a device. The device draws pairs of a stratum, with or without a scene, or
-// takes pairs from the host. The lanes and the exact decision decide the pairs, and the engine measures and counts
-// them. It returns only counts and chosen cases. This header includes no CUDA headers and compiles without nvcc.
+// takes pairs from the host. The lanes and the exact decision decide the pairs; the engine measures and counts
+// them, and returns only counts and chosen cases. This header includes no CUDA headers and compiles without nvcc.
 #pragma once
 
 #include <cstdint>
@@ -42,11 +42,11 @@ struct EngineSignature {
   std::vector<std::uint64_t> cases;  // the smallest indices of these pairs, sorted, at most kEngineCases
 };
 
-// The result of a run. If the device cannot decide a pair's bucket, `undecided` lists the pair; counts exclude it.
+// The result of a run. If the device cannot decide a pair's bucket, `undecided` lists the pair, and counts exclude it.
 struct EngineResult {
   std::uint64_t done = 0;  // pairs judged; fewer than requested if `undecided` might have overflowed
   // Arrays of counters, each indexed by bucket + kBucketMost: pairs, intersecting pairs, then each lane's false
-  // positives, false negatives and declined pairs. On doubles, each lane also has its wrong verdicts with the cause
+  // positives, false negatives and declined pairs. For doubles, also each lane's wrong verdicts with the cause
   // `stored` (analysis/tally.h).
   std::vector<std::uint64_t> counts;
   std::vector<std::uint64_t> extreme_counts;  // counters by place_on_axis + kBucketMost; empty without an axis

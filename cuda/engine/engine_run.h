@@ -20,9 +20,9 @@ struct EngineLimits {
 // The number of words in a key that has room for the marks of the largest of these groups.
 std::uint32_t key_words(std::span<const LaneGroup> groups);
 
-// Calls judge(b, first, count) for blocks b = 0, 1, … of pairs [first, first + count). After each block it calls
-// left(), which returns an upper bound on the number of pairs left to the host so far.
-// Returns: the number of pairs judged. It is less than `count` if the next block might leave too many pairs to the
+// Calls judge(b, first, count) for blocks b = 0, 1, … of pairs [first, first + count). After each block, left()
+// is called; it returns an upper bound on the number of pairs left to the host so far.
+// Returns: the number of pairs judged, which is less than `count` if the next block might leave too many pairs to the
 // host.
 std::uint64_t run_blocks(const EngineLimits& limits, std::uint64_t first, std::uint64_t count,
                          const std::function<void(int, std::uint64_t, std::uint32_t)>& judge,

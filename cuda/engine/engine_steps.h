@@ -199,8 +199,8 @@ struct PlaceExtreme {
 };
 
 // The steps for blocks of doubles. Single precision measures wide margins on the pair rounded to float32; double-double
-// bounds measure other margins. If neither decides the bucket, or if the relation needs more bits than RelatingDoubles
-// has, the pair is left to the host.
+// bounds measure other margins. If these bounds do not decide the bucket, or if the relation needs more bits than
+// RelatingDoubles has, the pair is left to the host.
 using RelatingDoubles = exact::detail::LongNumbers;
 
 struct FindChanged {

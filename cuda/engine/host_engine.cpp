@@ -157,7 +157,7 @@ class HostEngine final : public DeviceEngine {
     block.changed_for_lane = changed_for_lane_.data();
   }
 
-  // The columns of bits_. Each lane has two more columns, after these.
+  // The first columns of bits_. After these columns, each lane has two more.
   enum { kTruth, kWrong, kNone, kStored, kBeyond, kChanged, kColumns };
   static std::size_t of_lane(std::size_t l) { return kColumns + 2 * l; }
   std::uint64_t* column(std::size_t k) { return &bits_[k * words_]; }

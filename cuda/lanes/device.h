@@ -19,7 +19,7 @@ class Device {
   virtual ~Device() = default;
 
   // Decides the pairs with each lane; bits[k] has the verdicts of cuda_lanes[k]. If `doubles` is not empty, lanes in
-  // double decide `doubles`. Then `pairs` has the same pairs rounded to float32, or is empty if all lanes are in
+  // double decide `doubles`, and `pairs` has the same pairs rounded to float32, or is empty if all lanes are in
   // double. Requires: CUDA lanes. Throws: std::runtime_error on any CUDA error.
   virtual void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
                       std::vector<VerdictBits>& bits, std::span<const DoublePair> doubles = {}) = 0;
@@ -29,7 +29,7 @@ class Device {
   std::string toolkit;  // version of nvcc, "13.0.88"
 };
 
-// The first CUDA device. Without one, returns null and the reason in `why_not` ("no device", "built without CUDA").
+// The first CUDA device; null without a device, with the reason in `why_not` ("no device", "built without CUDA").
 std::unique_ptr<Device> open_device(std::string& why_not);
 
 }  // namespace graze::cuda

@@ -11,8 +11,8 @@
 
 namespace graze::cuda {
 
-// Resources of a lane's kernel. The exact lane and lanes under the policy `filtered` have several kernels; these are
-// the numbers of the first kernel, which sees every pair.
+// Resources of a lane's kernel. The exact lane and lanes under the policy `filtered` have several kernels; for them,
+// the numbers are those of the first kernel, which sees every pair.
 struct KernelNeeds {
   int threads = 0;  // threads of a block
   int registers = 0;

@@ -28,7 +28,7 @@ inline int count_devices() {
   return 0;
 }
 
-// Memory that grows and is freed with its owner: device memory, or pinned host memory.
+// Memory that can grow, and that the destructor frees: device memory, or pinned host memory.
 template <class T, bool pinned>
 class GrowingArray {
  public:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Determinants in double-double precision with error bounds. They decide pairs whose grid fits no built-in number type.
+// Determinants in double-double precision with error bounds, for pairs whose grid fits no built-in number type.
 //
 // Differences are exact: the sum of two doubles and its error are both doubles. Each of a determinant's six products
-// has two multiplications and three sums. Its relative error is 2 * 5 u^2 + 3 * 3 u^2 plus terms of u^3, with u =
+// has two multiplications and three sums, so its relative error is 2 * 5 u^2 + 3 * 3 u^2 plus terms of u^3, with u =
 // 2^-53; see core/margin/double_double.h. The size is a double, too small by less than one part in 2^48. So 32 u^2
 // bounds both errors. Nothing overflows or underflows. A difference of floats is zero or lies between 2^-149 and 2^129.
 // Doubles must be on a moderate grid (core/exact/error_bound.h), so all numbers are multiples of 2^-900.

@@ -8,8 +8,8 @@ namespace {
 
 using namespace exact::detail;
 
-// Decides with an error bound for each determinant. If the bound leaves a determinant's sign open, computes it in
-// multiword integers.
+// Decides with an error bound for each determinant. If the bound leaves a determinant's sign open, computes the
+// sign in multiword integers.
 template <class Kinds>
 __global__ void __launch_bounds__(kThreads) decide_each_closely(ArrayPairs pairs, PairList from, PairList left,
                                                                 std::uint32_t* intersects, unsigned long long* stages) {

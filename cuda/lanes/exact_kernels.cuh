@@ -48,8 +48,8 @@ inline constexpr int kExactLists = 6;
 // The exact decision of blocks of pairs, with memory for the lists between its steps.
 class DeviceExact {
  public:
-  // Starts kernels that write bit i % 32 of word i / 32 of `intersects` and `declined` for pair i. They write words for
-  // whole thread blocks. Unless `stages` is null, they add to stages[s] the number of pairs that stage s decided.
+  // Starts kernels that write bit i % 32 of word i / 32 of `intersects` and `declined` for pair i, up to the end of
+  // a thread block. Unless `stages` is null, the kernels add to stages[s] the number of pairs that stage s decided.
   void decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, unsigned long long* stages,
               cudaStream_t stream);
   // Does the same for pairs of doubles.
@@ -67,7 +67,7 @@ class DeviceExact {
   PairList left_[kExactLists];
 };
 
-// Starts the kernels of a CUDA lane. They write the same words as DeviceExact::decide.
+// Starts the kernels of a CUDA lane, which write the same words as DeviceExact::decide.
 void launch_lane(const Lane& lane, DeviceExact& exact, DevicePairs pairs, std::uint32_t* intersects,
                  std::uint32_t* declined, cudaStream_t stream);
 // Requires: a lane in double.

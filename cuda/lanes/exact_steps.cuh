@@ -107,7 +107,7 @@ __global__ void __launch_bounds__(kThreads)
 }
 
 // Calls decide(coordinates, yes) for each pair of a list. `decide` returns the stage that decided, and sets `yes` to
-// whether the pair intersects. If it returns kLeft, the pair goes to the list `left`.
+// whether the pair intersects. If `decide` returns kLeft, the pair goes to the list `left`.
 constexpr int kLeft = exact::kStages;
 
 template <class Pairs, class Decide>
@@ -191,7 +191,7 @@ __global__ void __launch_bounds__(kThreads, 2)
   });
 }
 
-// Decides with double-double bounds. If they leave a determinant's sign open, computes it in wide integers.
+// Decides with double-double bounds. If these leave a determinant's sign open, computes the sign in wide integers.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads) decide_one_by_one(Pairs pairs, PairList from, PairList left,
                                                               std::uint32_t* intersects, unsigned long long* stages) {
@@ -219,8 +219,8 @@ void launch_large_steps(const Pairs& pairs, const PairList* left, std::uint32_t*
   check(cudaGetLastError());
 }
 
-// Decides the pairs of the first two lists; floats represent the numbers of left[0]. The other lists must be empty: the
-// steps fill them.
+// Decides the pairs of the first two lists; floats represent the numbers of the pairs in left[0]. The other lists must
+// be empty: the steps fill them.
 template <class Pairs>
 void launch_exact_steps(const Pairs& pairs, const PairList (&left)[kExactLists], std::uint32_t* intersects,
                         unsigned long long* stages, cudaStream_t stream) {

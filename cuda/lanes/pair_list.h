@@ -33,8 +33,8 @@ struct PairList {
 
 #ifdef __CUDACC__
 // Adds the indices of a thread block to two lists. `which` is 0 or 1, the list for this thread's index, or -1 for
-// neither. All threads of the block must call it. It uses one atomic operation per block and list, because a device
-// performs an atomic operation on a counter only every 0.7 ns.
+// neither. All threads of the block must call this function. It uses one atomic operation per block and list, because a
+// device performs an atomic operation on a counter only every 0.7 ns.
 __device__ inline void add_of_block(const PairList& first, const PairList& second, int which, std::uint32_t place) {
   __shared__ std::uint32_t begins[2][32];
   if (!__syncthreads_or(which >= 0)) return;

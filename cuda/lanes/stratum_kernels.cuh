@@ -28,8 +28,8 @@ void launch_generate(float* coordinates, std::uint32_t count, std::uint64_t seed
 void launch_generate(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, double* coordinates,
                      cudaStream_t stream);
 
-// Writes a source's pairs to device memory. The device draws them if it has a kernel for the source. Otherwise all CPU
-// cores draw them, and the pairs are copied.
+// Writes a source's pairs to device memory. The device draws the pairs if it has a kernel for the source; otherwise
+// all CPU cores draw them, and the pairs are copied.
 class Drawing {
  public:
   // Writes pairs [first, first + count) as 18 arrays of `count` coordinates, in the stream's order.

@@ -22,7 +22,7 @@ struct QueryRange {
   std::uint64_t first_in_part = 0;
 };
 
-// One reference's counts over a range. `first` is the index of its first hit; the range's first triangle has index 0.
+// One reference's counts over a range. `first`: the index of the reference's first hit, counted from the range's start.
 // In a search for any hit, the first reference's `declined` counts only triangles before the earliest hit of
 // any reference.
 struct QueryCounts {
@@ -77,7 +77,7 @@ class QueryDevice {
   std::string name;  // "NVIDIA H200"
 };
 
-// The number of devices. If it is 0, `why_not` becomes the reason ("no device", "built without CUDA").
+// The number of devices. If there is none, `why_not` becomes the reason ("no device", "built without CUDA").
 int count_query_devices(std::string& why_not);
 
 // Throws: DeviceFailure.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A query's steps after the slabs: pairs on small grids, the filter in doubles, the exact decision, and counts. Also
-// kernels that write the pairs for other lanes.
+// A query's steps after the slabs: pairs on small grids, the filter in doubles, the exact decision, and counts. Other
+// kernels in this file write the pairs for other lanes.
 #include "cuda/query/query_kernels.cuh"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ __device__ void load(const QueryPairs& pairs, std::uint32_t i, float* c) {
   pairs.chunk.array.load(pairs.chunk.first + i, c + 9);
 }
 
-// Decides the listed triangles whose grid is small, as it often is if triangles touch. Declines triangles with a
+// Decides the listed triangles whose grid is small, as is common for touching triangles. Declines triangles with a
 // coordinate that is not finite.
 __global__ void __launch_bounds__(kThreads, 2)
     decide_on_grid(const __grid_constant__ QueryPairs pairs, PairList from, PairList left, std::uint32_t* hits,

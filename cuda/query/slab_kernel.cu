@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Memory bandwidth limits this kernel, so each warp prefetches tiles of triangles into shared memory with asynchronous
 // copies. The reference's slabs decide most triangles. The others are queued until there are 32 of them or their tile
-// is about to be overwritten; then the filter in floats decides them together. It leaves about one triangle in a
-// hundred open; the kernel lists these.
+// is about to be overwritten; then the filter in floats decides them together. The filter leaves about one triangle in
+// a hundred open, and the kernel lists those.
 #include <cuda_pipeline_primitives.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ __device__ std::uint32_t lanes_before(std::uint32_t lanes) {
 // Queues those triangles of a tile that the slabs leave open.   Returns: the queue's new end.
 __device__ std::uint32_t queue_open(const exact::PreparedTriangle& reference, WarpMemory& warp, std::uint32_t stage,
                                     std::uint32_t end) {
-  // Each thread reads nine vectors of 4 * kEach bytes. Nine is odd, so no two threads read from one bank at once.
+  // Each thread reads nine vectors of 4 * kEach bytes. Because nine is odd, no two threads read from one bank at once.
   struct alignas(4 * kEach) Vector {
     float v[kEach];
   };

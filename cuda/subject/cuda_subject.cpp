@@ -48,7 +48,7 @@ twin::Module module_of(const CudaBuild& build, const fs::path& source) {
   return twin::reduced(module, kSubjectKernel);
 }
 
-// Whether ptxas generates the same code for the PTX and for the explicit PTX. A one-digit file keeps the result.
+// Whether ptxas generates the same code for the PTX and for the explicit PTX. A file in `cache` keeps the result.
 bool same_machine_code(const CudaBuild& build, const twin::Module& module, const fs::path& ptxas,
                        const fs::path& cache) {
   std::ostringstream written;

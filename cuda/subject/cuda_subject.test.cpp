@@ -38,7 +38,7 @@ class CudaSubject : public testing::Test {
                                const std::vector<std::string>& flags = {}) const {
     return build_cuda_subject(file(text), function, flags, scratch_.path() / "cache");
   }
-  // The error message about the source text, without its folder's path.
+  // The error message about the source text, with the folder removed from file names.
   std::string complaint(const std::string& text, const std::string& function = "intersects") const {
     try {
       build(text, function);

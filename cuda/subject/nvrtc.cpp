@@ -34,7 +34,7 @@ std::vector<fs::path> places() {
   return all;
 }
 
-// Runs the work in a child process, because NVRTC may never finish, crash, or catch signals.
+// Runs the work in a child process, because NVRTC may crash, catch signals or never finish.
 // Returns: the work's result.   Throws: CompileError or std::runtime_error, if the work does; Stopped, within 0.1 s of
 // a request to stop.
 std::string in_child(const std::function<std::string()>& work) {

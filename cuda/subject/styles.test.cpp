@@ -143,7 +143,7 @@ void expect_twin_equals_host(const std::string& style) {
   std::map<int, int> answers;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     ++answers[found[i]];
-    // min_max copies the sign of a difference. A NaN difference is negative on x86, but not on a GPU or in a twin.
+    // The min_max style copies a difference's sign. A NaN difference is negative on x86, but not on a GPU or in a twin.
     const Vec3<float>&p = pairs[i].a[0], &q = pairs[i].b[0];
     if (style == "min_max" && std::isnan(p.y * q.y - p.z * q.z)) continue;
     if (found[i] != expected[i] && wrong++ < 3)

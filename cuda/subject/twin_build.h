@@ -12,8 +12,8 @@
 namespace graze::cuda {
 
 // The twin of the module's only kernel: a library in `cache`, which is built if it is missing. The library exports
-// graze_subject (see subject.h) and the symbols that cuda/twin/twin_library.h reads. Its file name contains a hash of
-// its source, the compiler and the flags.
+// graze_subject (see subject.h) and the symbols that cuda/twin/twin_library.h reads. The file name contains a hash of
+// the twin's source, the compiler and the flags.
 // Throws: twin::PtxError for an instruction that cannot be replayed; std::runtime_error when the compiler fails.
 std::filesystem::path build_twin(const twin::Module& module, Scalar scalar, bool contracted,
                                  const std::filesystem::path& cache);

@@ -12,7 +12,7 @@ struct Explicit {
   std::span<const char*const> pieces, wrong_rule;
 };
 
-// The build generates this file. It has the texts in pieces, and kExplicit with a row for each variant that has a twin.
+// The build generates this file: the texts in pieces, and the table kExplicit, with a row for each variant with a twin.
 #include "cuda/generated/explicit_ptx.inc"
 
 }  // namespace

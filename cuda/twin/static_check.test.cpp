@@ -71,8 +71,8 @@ TEST_P(StaticCheck, ExplicitPtxHasTheOperationsOfTheDefaultBuild) {
     EXPECT_EQ(operations(code), operations(written.at(kernel))) << kernel;
   }
   RecordProperty("same_code", same_code(built, written));
-  // With nvcc 13.0.88, 25 of the 30 contracted kernels are identical. The others differ in registers and in the order
-  // of instructions.
+  // With nvcc 13.0.88, 25 of the 30 contracted kernels are identical. The other five differ in registers and in the
+  // order of instructions.
   EXPECT_GE(same_code(built, written), std::string(GetParam()) == "cuda_nofma" ? 30 : 23);
 }
 
@@ -83,7 +83,7 @@ TEST(StaticCheck, CatchesTheRightProductFirst) {
   if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
   const Code built = read_cubin(generated("cuda_fma.cubin")),
              wrong = read_cubin(generated("cuda_fma.right_first.cubin"));
-  // Every kernel has some a*b - c*d, so no kernel has the same code. The counts are equal: each fuses one product.
+  // Every kernel has some a*b - c*d, so the wrong rule changes the code of every kernel, but not its counts.
   EXPECT_EQ(same_code(built, wrong), 0);
 }
 
@@ -109,7 +109,7 @@ std::map<std::string, int> fused_and_products(const std::string& code) {
 
 class KernelsUnderTolerances : public testing::TestWithParam<const char*> {};
 
-// If ptxas contracts a kernel differently from the rule, its twin would be wrong, so the lane must not have a twin.
+// If ptxas contracts a kernel differently from the rule, the kernel's twin is wrong, so the lane must not have one.
 // scripts/update_generated reads the messages of this test, and writes twin/contracted_otherwise.inc.
 TEST_P(KernelsUnderTolerances, HaveTwinsJustWhereMachineCodeHasTheirContractions) {
   if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";

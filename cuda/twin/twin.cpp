@@ -114,7 +114,7 @@ DecideBlock block_on_host(const Lane& lane) {
 
 namespace {
 
-// The row of the recording twin. Without such a twin, the row has no functions.
+// The row of the recording twin; it has no functions if there is no such twin.
 const TwinRow& record_row(const Lane& lane) {
   static const TwinRow kNone;
   const TwinTable* table = kTables[static_cast<int>(lane.variant)].records;

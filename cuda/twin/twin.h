@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twins replay CUDA lanes on the CPU, bit for bit, with C++ generated from the lanes' PTX. They need neither a GPU
+// The twins replay CUDA lanes on the CPU, bit for bit, with C++ generated from the lanes' PTX. Twins need neither a GPU
 // nor nvcc. The sign and the payload of a NaN are replayed only where a kernel reads its bits.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace graze::cuda {
 DecideBlock::Function twin_block(const Lane& lane);
 
 // The function that gives the lane's verdicts on the host: the lane's own function, or a CUDA lane's twin. For the
-// exact CUDA lane it is the exact CPU lane, which is built from the same source. Null if there is none.
+// exact CUDA lane, that is the exact CPU lane, which is built from the same source. Null if there is none.
 DecideBlock block_on_host(const Lane& lane);
 
 // A function that writes each pair's trace hash (see cuda/lanes/trace.h). The hash includes the verdict.
@@ -31,7 +31,7 @@ TraceFunction<DoublePair> twin_trace_of_doubles(const Lane& lane);
 RecordBlock twin_record(const Lane& lane);
 RecordFunction<DoublePair> twin_record_of_doubles(const Lane& lane);  // for a lane in double
 
-// Whether this build has twins of lanes under tolerances. Builds by scripts/campaign do not.
+// Whether this build has twins of lanes under tolerances; builds by scripts/campaign have none.
 bool has_policy_twins();
 
 // The result of `graze prove-twin` for a lane; see LaneProof in prove.h.
@@ -70,13 +70,13 @@ struct ComparisonSite {
   int ptx_line;
 };
 
-// The contraction sites of a lane's twin, in program order. Empty if the lane has no twin or no contractions.
+// The contraction sites of a lane's twin, in program order; none if the lane has no twin or no contractions.
 std::span<const ContractionSite> contraction_sites(const Lane& lane);
 // The contraction sites of the kernel that decides pairs of this type.
 std::span<const ContractionSite> contraction_sites(const Lane& lane, const AnyPair& pair);
 
-// Loads the twin of a foreign CUDA lane: a library that cuda/subject has built. A verdict may take `most_seconds`
-// seconds. Throws: as TwinLibrary.
+// Loads the twin of a foreign CUDA lane: a library that cuda/subject has built. A verdict may take at most
+// `most_seconds` seconds. Throws: as TwinLibrary.
 void add_foreign_twin(const Lane& lane, const std::string& twin, double most_seconds);
 double most_seconds(const Lane& lane);  // limit for one verdict.   Requires: a foreign lane with sites
 
@@ -96,7 +96,7 @@ struct Comparison {
 };
 
 // Like decide_fusing, for a foreign lane with sites. `made` receives the first comparisons that the lane makes, as many
-// as fit, and `count` receives their number.
+// as fit, and `count` receives the number of those.
 Verdict decide_comparing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused,
                          std::span<Comparison> made, std::size_t& count);
 

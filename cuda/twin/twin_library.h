@@ -34,7 +34,7 @@ class TwinLibrary {
   std::span<const ComparisonSite> comparisons() const { return comparisons_; }
 
   // The answer if only the sites whose bit is set are fused. Bit i % 64 of word i / 64 belongs to site i. `made`
-  // receives the first comparisons that the kernel makes, as many as fit, and `count` receives their number. A twin in
+  // receives the first comparisons that the kernel makes, as many as fit, and `count` the number of those. A twin in
   // float decides a pair of doubles after rounding it to float32. Throws: std::invalid_argument for too few bits.
   int decide_fusing(const AnyPair& pair, std::span<const std::uint64_t> fused, std::span<Comparison> made = {},
                     std::size_t* count = nullptr) const;

@@ -34,7 +34,7 @@ using Bits = std::conditional_t<sizeof(T) == 1, u8,
                                 std::conditional_t<sizeof(T) == 2, u16, std::conditional_t<sizeof(T) == 4, u32, u64>>>;
 
 // The bits of a register. Float32 operations return different NaNs on a device and on x86, which matters if the bits
-// are read. Float64 operations return the same NaN on both.
+// are read. Float64 operations return the same NaN on a device and on x86.
 constexpr u32 bits_of(f32 x) {
   const u32 bits = std::bit_cast<u32>(x);
   return bits == 0xffc00000u ? 0x7fffffffu : bits;
@@ -149,7 +149,7 @@ T div(T a, T b) {
 
 // .ftz depends on the result rounded to 24 bits with unlimited exponent range, as measured on an H100. IEEE arithmetic
 // rounds results below the least normal number to fewer bits, so it would round the largest flushed results up to that
-// number. Sums and differences of this size are exact, so only products and quotients are affected.
+// number. Sums and differences near that number are exact, so only products and quotients are affected.
 constexpr f64 kFlushBelow = 0x1p-126 - 0x1p-151;
 
 inline f32 mul_ftz(f32 a, f32 b) {

@@ -25,7 +25,7 @@ T brev(T x) {
   return result;
 }
 
-// The index of the highest set bit, or of the highest clear bit of a negative number. All ones if there is no such bit.
+// The index of the highest set bit, or of the highest clear bit of a negative number; all ones without such a bit.
 template <class T>
 u32 bfind(T x) {
   const Bits<T> bits = static_cast<Bits<T>>(x < 0 ? ~x : x);

@@ -159,7 +159,7 @@ bool test_subnormal(T x) {
 
 // ---- conversions ----
 
-// These round to an integral number: to nearest even, toward zero, down, up. A zero keeps its sign.
+// rni, rzi, rmi and rpi round to an integral number: to nearest even, toward zero, down, up. A zero keeps its sign.
 template <class T>
 T rni(T x) {
   return std::nearbyint(x);

@@ -30,8 +30,8 @@ inline f32 next_to(f32 x, bool up) {
   return std::nextafter(x, up ? std::numeric_limits<f32>::infinity() : -std::numeric_limits<f32>::infinity());
 }
 
-// With Flush, a result below the least normal number becomes zero. As in twin_ops.h, this depends on the result rounded
-// to 24 bits.
+// With Flush, a result becomes zero if it is below the least normal number after rounding to 24 bits, as in
+// twin_ops.h.
 template <Rounding R, bool Flush>
 f32 narrowed(Exact x) {
   if (is_nan(x.near) || abs(x.near) == std::numeric_limits<f64>::infinity()) return static_cast<f32>(x.near);

@@ -80,7 +80,7 @@ template <class Real>
 Real directed_quotient(const std::string& mode, Real a, Real b) {
   const Real nearest = a / b;
   if (b == 0 || !finite(a) || !finite(b)) return nearest;
-  // If the quotient overflows, the nearest result is infinite, and its error has the other sign.
+  // If the quotient overflows, the nearest result is infinite, and the exact quotient is closer to zero.
   const int left =
       std::isinf(nearest) ? (nearest > 0 ? -1 : 1) : sign_of_quad(Quad(a) - Quad(nearest) * Quad(b)) * (b < 0 ? -1 : 1);
   return directed<Real>(mode, {nearest, left});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A predicate with many early returns. It is the interval test of Moller 1997, with divisions.
+// A predicate with many early returns: the interval test of Moller 1997, with divisions.
 #include <math.h>
 
 __device__ bool intersects(const float a[9], const float b[9]) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A predicate with differences of products (Kahan). It calls fmaf, which no compiler flag replaces.
+// A predicate with differences of products (Kahan). The predicate calls fmaf, which no compiler flag replaces.
 #include <cmath>
 
 __device__ float difference(float a, float b, float c, float d) {

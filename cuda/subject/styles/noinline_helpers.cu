@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A predicate with helper functions that are not inlined. Their arguments are pointers and values.
+// A predicate with helper functions that are not inlined and take pointers and values.
 __noinline__ __device__ float orient(const float* p, const float* q, const float* r, const float* s) {
   const float ax = p[0] - s[0], ay = p[1] - s[1], az = p[2] - s[2];
   const float bx = q[0] - s[0], by = q[1] - s[1], bz = q[2] - s[2];

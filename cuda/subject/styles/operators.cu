@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A predicate on vectors with operators, passed by reference. It uses methods and a class with a constructor.
+// A predicate on vectors with operators, passed by reference, with methods and a class with a constructor.
 struct Vec {
   float x, y, z;
   __device__ explicit Vec(const float* p) : x(p[0]), y(p[1]), z(p[2]) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A predicate that tests edges against the other triangle (Moller-Trumbore). It computes 1/x once for each edge.
+// A predicate that tests edges against the other triangle (Moller-Trumbore) and computes 1/x once for each edge.
 __device__ bool hits(const float* o, const float* end, const float* t) {
   const float d[3] = {end[0] - o[0], end[1] - o[1], end[2] - o[2]};
   const float e[3] = {t[3] - t[0], t[4] - t[1], t[5] - t[2]}, f[3] = {t[6] - t[0], t[7] - t[1], t[8] - t[2]};

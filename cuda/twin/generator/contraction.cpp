@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How nvcc contracts. The front end (cicc) turns a*b + c into fma.rn. It writes a*b - c*d and x - a*b as mul and sub
+// How nvcc contracts. The front end (cicc) turns a*b + c into fma.rn, but a*b - c*d and x - a*b into mul and sub
 // without a rounding suffix, which ptxas at -O1 and above may contract. The rule of ptxas, for m = a*b:
 //
 //   PTX, all in one block                 machine code                  row

@@ -162,7 +162,7 @@ TEST_P(Contraction, FactorsOverwrittenInBetweenAreKept) {
             "mov.T %t_0, %a1\nmul.rn.T %f1, %a1, %a2\nmov.T %a1, %a5\nfma.rn.T %f2, %t_0, %a2, %a3\n");
   EXPECT_EQ(contracted("mul.T %f1, %f1, %a2;\nadd.T %f2, %f1, %a3;\n", GetParam()),
             "mov.T %t_0, %f1\nmul.rn.T %f1, %f1, %a2\nfma.rn.T %f2, %t_0, %a2, %a3\n");
-  // The pass also keeps the second factor.
+  // The pass also keeps an overwritten second factor.
   EXPECT_EQ(contracted("mul.T %f1, %a1, %a2;\nmov.T %a2, %a5;\nadd.T %f2, %f1, %a3;\n", GetParam()),
             "mov.T %t_0, %a2\nmul.rn.T %f1, %a1, %a2\nmov.T %a2, %a5\nfma.rn.T %f2, %a1, %t_0, %a3\n");
   EXPECT_EQ(contracted("mul.T %f1, %a1, %f1;\nadd.T %f2, %f1, %a3;\n", GetParam()),

@@ -41,7 +41,7 @@ class Operands {
   // The C++ name of a register.
   std::string reg(const std::string& name) const;
 
-  // "d = expression;" for an expression of this type. A wider register receives the value, extended by its type.
+  // "d = expression;" for an expression of this type. For a wider register, the value is extended as its type requires.
   std::string assign(const std::string& destination, const std::string& type, const std::string& expression) const;
   std::string assign(const std::string& type, const std::string& expression) const {
     return assign(operand(0), type, expression);

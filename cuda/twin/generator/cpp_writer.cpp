@@ -37,7 +37,7 @@ std::string cpp_directive(const std::string& directive) {
 }
 
 void write_body(std::ostream& out, const Module& module, const Kernel& kernel) {
-  // A device may read memory that was never written. In a twin it is zero, so that the results are deterministic.
+  // A device may read memory that was never written; in a twin such memory is zero, so that results are deterministic.
   if (!kernel.local.empty())
     out << fmt::format("    alignas({}) unsigned char {}[{}] = {{}};\n", std::max(kernel.local_align, 8),
                        identifier(kernel.local), kernel.local_bytes);

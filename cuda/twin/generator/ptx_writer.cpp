@@ -55,7 +55,7 @@ std::string relative(std::string path, const std::string& root) {
   return path;
 }
 
-// Whether the instruction is or may become a contraction. Only these instructions need source lines.
+// Whether the instruction is or may become a contraction. Only such instructions need source lines.
 bool may_contract(const Instruction& i) {
   return i.is_operation() && i.op.back()[0] == 'f' &&
          (i.op[0] == "fma" || ((i.op[0] == "add" || i.op[0] == "sub") && !i.has("rn")));
@@ -98,7 +98,7 @@ void write_explicit(std::ostream& out, const Module& module, Rule rule) {
 }
 
 std::string kernel_hash(const Kernel& kernel, const Contracted& contracted) {
-  // These names contain the kernel's number in its module.
+  // The names of labels and of local memory contain the kernel's number in its module.
   static const std::regex kPlace(R"((\$L__BB|__local_depot)\d+)");
   std::uint64_t hash = fnv1a("");
   for (const Kernel* form : {&kernel, &contracted.kernel}) {

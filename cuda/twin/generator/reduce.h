@@ -16,13 +16,13 @@ Module reduced(const Module& module, const std::string& kernel);
 
 using Lines = std::set<std::pair<std::string, int>>;  // pairs of file and line
 
-// Lines with an fma. In a module compiled without contraction, these are the lines with an fma in the source.
+// Lines with an fma. In a module compiled without contraction, the user wrote an fma on each of these lines.
 Lines lines_with_fma(const Module& module);
 
 // Marks each fma on these lines as written in the source, so that it does not count as a contraction.
 void mark_by_hand(Module& module, const Lines& lines);
 
-// The hash of the kernel, its functions and its tables. Without functions and tables, it is kernel_hash.
+// The hash of the kernel, its functions and its tables. Without functions and tables, the hash is kernel_hash.
 std::string module_hash(const Module& module);
 
 }  // namespace graze::cuda::twin

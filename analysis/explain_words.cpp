@@ -175,7 +175,7 @@ std::string reason(const LaneExplanation& lane) {
 }
 
 std::string remedy(const LaneExplanation& lane) {
-  if (lane.cause == Cause::logic) return "no arithmetic would help";
+  if (lane.cause == Cause::logic) return "more precision would not help";
   if (lane.cause == Cause::contraction) return "without contraction it is right";
   if (lane.cause == Cause::fast_math) return "with every operation rounded as written it is right";
   const std::string bits = lane.bits_needed == 0

@@ -104,7 +104,7 @@ std::string lane_text(const AnyPair& pair, const analysis::LaneExplanation& lane
     text += reports::wrapped(words, screen.columns, indent, indent + 2);
   };
   const auto surroundings = [&] {
-    line(4, "coordinates that may change by some ulps without effect:" + free_coordinates(lane));
+    line(4, "coordinates that may move by an ulp or by 2^-10 of their size without effect:" + free_coordinates(lane));
     line(4, fmt::format("wrong in {} of {} orders, {} of {} mirror images, {} of {} scalings by 2^-{}…2^{}",
                         lane.orders.wrong, lane.orders.of, lane.mirrored.wrong, lane.mirrored.of, lane.scalings.wrong,
                         lane.scalings.of, analysis::kMostScaling, analysis::kMostScaling));

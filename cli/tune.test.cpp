@@ -264,7 +264,7 @@ TEST_F(AgreeCommand, FreshPairsConfirmItForTwoAlgorithms) {
     } else {
       EXPECT_GE(fresh, json["low"].get<double>());
       EXPECT_GT(json["low"].get<double>(), 3e-3);
-      EXPECT_EQ(ran.out.find("No tolerance keeps"), 0u) << ran.out;
+      EXPECT_EQ(ran.out.find("No tolerance that was tried keeps"), 0u) << ran.out;
     }
     expect_done(tune + "--threads 1 --out u > /dev/null && diff -r t u");
     expect_done(

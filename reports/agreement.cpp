@@ -66,8 +66,9 @@ std::string answer(const AgreeQuestion& q, const Agreed& a) {
     case TuneResult::not_useful:  // never happens: differing verdicts are of one kind
       break;
   }
-  return fmt::format("No tolerance keeps the rate of differing verdicts at or under {}. {}: {}; {}.", q.max_rate,
-                     a.chosen.empty() ? "None is better than no policy" : a.chosen + " comes nearest", found, low);
+  return fmt::format("No tolerance that was tried keeps the rate of differing verdicts at or under {}. {}: {}; {}.",
+                     q.max_rate, a.chosen.empty() ? "None is better than no policy" : a.chosen + " comes nearest",
+                     found, low);
 }
 
 std::string errors(const Counts& counts) {

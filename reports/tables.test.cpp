@@ -97,7 +97,7 @@ TEST(Bounds, ThoseOfAnAgreementAreRoundedOutward) {
   ASSERT_LT(agreed.low, 0.0098);
   agreed.result = analysis::TuneResult::not_satisfiable;
   said = agreement_sentences(question, agreed)[0];
-  EXPECT_NE(said.find("No tolerance keeps"), said.npos) << said;
+  EXPECT_NE(said.find("No tolerance that was tried keeps"), said.npos) << said;
   EXPECT_NE(said.find("over 0.0097."), said.npos) << said;
 }
 

@@ -53,11 +53,8 @@ std::string choice_words(const TuneQuestion& q, const std::string& policy) {
                      policy.empty() || e.name == e.written ? "" : fmt::format(" (now {})", printable(e.written)));
 }
 
-// The word for the tuned quantity, as in "No tolerance is good enough here".
+// The word for the tuned quantity, as in "No tolerance that was tried is good enough here".
 std::string_view setting(const TuneQuestion& q) { return q.source ? "value" : "tolerance"; }
-
-// "value of kEps from 0 up". A sweep has no negative values, because they mean something else.
-std::string value_of(const TuneQuestion& q) { return "value of " + printable(q.source->epsilon.name) + " from 0 up"; }
 
 // "12 false negatives (0.012 %) and 0 false positives of 100,000 pairs"
 std::string errors(const PolicyErrors& e) {
@@ -113,17 +110,18 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
           of, words(q.forbid), q.max_rate);
     case TuneResult::not_useful:
       return fmt::format(
-          "No {6} is good enough here. Among the {7} that keep {0} at or under {1}, the one with the fewest {2} is "
+          "No {6} that was tried is good enough here. Among those that keep {0} at or under {1}, the one with the "
+          "fewest "
+          "{2} is "
           "{3}; {4}. The rate of {2} may be at most {5} (--max-other). The exact lane has no errors.",
-          words(q.forbid), q.max_rate, other_words(q.forbid), of, trust, q.max_other, setting(q),
-          q.source ? "values" : "tolerances");
+          words(q.forbid), q.max_rate, other_words(q.forbid), of, trust, q.max_other, setting(q));
     case TuneResult::not_satisfiable:
       break;
   }
   return fmt::format(
-      "No {} is good enough here: {} keeps {} at or under {}. The one that comes nearest is {}. The exact lane has no "
-      "errors.",
-      setting(q), q.source ? "no " + value_of(q) : "no tolerance of " + q.lane, words(q.forbid), q.max_rate, of);
+      "No {} that was tried is good enough here: none keeps {} at or under {}. The one that comes nearest is {}. The "
+      "exact lane has no errors.",
+      setting(q), words(q.forbid), q.max_rate, of);
 }
 
 // Warns if the chosen value is 0 and errs differently from the next smallest value; otherwise empty. A comparison with
@@ -188,9 +186,10 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
   }
   const auto changes_nothing = [](const PolicyErrors& point) { return point.changes_nothing(); };
   if (question.source && std::all_of(tuned.curves[0].points.begin(), tuned.curves[0].points.end(), changes_nothing))
-    result.push_back(fmt::format("Dead knob: no {} changes any verdict here.", value_of(question)));
+    result.push_back(fmt::format("Dead knob: no value of {} that was tried, from 0 up, changes any verdict here.",
+                                 printable(question.source->epsilon.name)));
   for (const std::string& site : tuned.dead)
-    result.push_back(fmt::format("Dead knob: at {} no tolerance changes any verdict here.", site));
+    result.push_back(fmt::format("Dead knob: at {} no tolerance that was tried changes any verdict here.", site));
   const analysis::ScaleBreak& scale = tuned.scale;
   for (const auto& [k, at] : {std::pair{scale.up, scale.at_up}, {scale.down, scale.at_down}}) {
     if (k != 0)

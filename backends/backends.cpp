@@ -13,8 +13,8 @@ std::string why_not_on_processor(const Lane& lane, const std::string&) {
   return runs_on_this_cpu(lane) ? "" : "no " + std::string(info_of(lane.variant).needs) + " instructions";
 }
 
-// Foreign code and the programs of toolchains run in a separate process. Foreign CUDA code runs there on the device or
-// as a twin, so no instructions of this processor are required.
+// Foreign code and the programs of toolchains run in a separate process. In that process, foreign CUDA code runs
+// on the device or as a twin, so it requires no instructions of this processor.
 std::string why_not_in_process(const Lane& lane, const std::string& why_no_device) {
   if (!lane.decide) return lane.evidence;
   return lane.is_cuda() ? "" : why_not_on_processor(lane, why_no_device);

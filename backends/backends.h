@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The backends that run lanes: this processor, a process with foreign code, or a CUDA device with its twins. One table
-// has a row for each. Other code calls the functions of a lane's row and never asks which row it is
-// (scripts/check_includes.py checks this).
+// has a row for each backend. Other code calls the functions of a lane's row and never checks which row that is
+// (scripts/check_includes.py enforces this).
 #pragma once
 
 #include <string>

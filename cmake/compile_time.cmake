@@ -11,8 +11,8 @@ if(GRAZE_CAMPAIGN)
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-w>)
 endif()
 
-# graze_cold(file…): in a campaign build, compiles these files of the current folder with -O1. Their code must not run
-# for each pair.
+# graze_cold(file…): in a campaign build, compiles these files of the current folder with -O1. None of
+# their code may run for every pair.
 function(graze_cold)
   if(GRAZE_CAMPAIGN)
     set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O1)
@@ -47,7 +47,7 @@ function(graze_precompiled level)
   endif()
   foreach(target IN LISTS ARGN)
     if(has_precompiled)
-      # By default, programs are compiled with -fPIE. GCC would then reject these headers, which are precompiled with
+      # By default, programs are compiled with -fPIE, and GCC would reject these headers, which are precompiled with
       # -fPIC for libraries.
       target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-${level}$<SEMICOLON>-fPIC>)
       target_precompile_headers(${target} REUSE_FROM graze_precompiled_${level})
@@ -56,9 +56,9 @@ function(graze_precompiled level)
 endfunction()
 
 # graze_together(TARGET [ALONE file…] [MUTATED file…]): a unity build in batches of nine sources, or of eighteen in a
-# campaign build. It saves the seconds that each file spends on CLI11, our own headers and its copy of the JSON library.
+# campaign build. Each batch compiles CLI11, our headers and the JSON library only once, which saves seconds per file.
 # ALONE files are compiled separately because their private names clash with those of other files. MUTATED files are
-# compiled separately because scripts/mutate compiles them one by one; a campaign build ignores this.
+# compiled separately because scripts/mutate compiles them one by one; a campaign build ignores MUTATED.
 function(graze_together target)
   cmake_parse_arguments(arg "" "" "ALONE;MUTATED" ${ARGN})
   set(batch 9)

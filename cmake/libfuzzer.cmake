@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Sets GRAZE_LIBFUZZER to clang's libFuzzer without a main function, or to false if it is missing or does not link. Code
-# from any compiler can call this library. Only the guided search (graze hunt) needs it.
+# built with any compiler can call this library; only the guided search (graze hunt) needs it.
 if(NOT DEFINED GRAZE_LIBFUZZER)
   file(GLOB folders /usr/lib/llvm-*/lib/clang/*/lib/linux /usr/lib/clang/*/lib/linux)
   list(SORT folders COMPARE NATURAL ORDER DESCENDING)

@@ -22,11 +22,11 @@ endif()
 add_test(NAME scripts.test.npm_package COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/npm_package.test.py ${CMAKE_BINARY_DIR})
 add_test(NAME packaging.Action COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/packaging/action.test.py $<TARGET_FILE:graze>)
 set_tests_properties(scripts.test.npm_package packaging.Action PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
-# Without the viewer, the test of the web site is skipped.
+# If this build has no viewer, the test of the web site is skipped.
 add_test(NAME scripts.test.results COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/results.test.py $<TARGET_FILE:graze>)
 set_tests_properties(scripts.test.results PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
 # This test takes a minute on an idle machine. To run it by hand for an hour: scripts/torture --minutes 60. The seed
-# changes with each commit, so ten commits kill campaigns and minimisations a hundred times, at different moments.
+# changes with each commit, so in ten commits, the test kills campaigns and minimisations at a hundred moments.
 add_test(NAME scripts.Torture COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/torture --rounds 2 --kills 10 --seed commits --graze $<TARGET_FILE:graze>)
 set_tests_properties(scripts.Torture PROPERTIES TIMEOUT 1500)
 # Checks that the tests catch defects planted in our own sources. This build's Ninja commands compile each defect.

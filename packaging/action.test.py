@@ -19,7 +19,7 @@ from run_action import Run
 ROOT = pathlib.Path(__file__).parent.parent
 GRAZE = pathlib.Path(sys.argv.pop()).resolve()
 BUGGY = "int meet(const float a[9], const float b[9]) { return a[0] <= b[0] + 100; }\n"
-# This code is correct in every build except with -ffast-math. The input `lanes` leaves out the lanes of that build.
+# This code is correct in every build except the one with -ffast-math, whose lanes the input `lanes` leaves out.
 RIGHT = """#ifdef __FAST_MATH__
 bool meet(const float*, const float*) { return false; }
 #else

@@ -127,8 +127,8 @@ Triangles<Real> triangles_of(const void* numbers, std::uint64_t count) {
   return {static_cast<const Triangle<Real>*>(numbers), count};
 }
 
-// Rounds the triangles to float32, to compute their boxes. Rounding keeps the order of coordinates, even where it
-// clamps them to the largest float32. So if triangles intersect, their rounded boxes overlap.
+// Rounds the triangles to float32, to compute their boxes. Rounding preserves the order of coordinates, even
+// where it clamps them to the largest float32. So if triangles intersect, their rounded boxes overlap.
 std::vector<Triangle<float>> rounded(Triangles<double> triangles) {
   static constexpr double kMost = std::numeric_limits<float>::max();
   const auto round = [](double x) { return static_cast<float>(std::isfinite(x) ? std::clamp(x, -kMost, kMost) : x); };
@@ -312,9 +312,9 @@ int graze_py_meets(const void* reference, const void* triangles, int doubles, st
   });
 }
 
-// Finds the pairs of triangles that intersect within a mesh (b null) or between two meshes. With only_piercing, pairs
-// that only touch are left out. Sets the number of pairs; a call of graze_py_take in the same thread then copies
-// the sorted pairs. Ends soon after another thread makes `stop` nonzero.
+// Finds the pairs of triangles that intersect within a mesh (b null) or between two meshes. If only_piercing is set,
+// pairs that merely touch are left out. Sets the number of pairs; a call of graze_py_take in the same thread then
+// copies the sorted pairs. Ends soon after another thread makes `stop` nonzero.
 int graze_py_intersections(const void* a, std::uint64_t count_a, const void* b, std::uint64_t count_b, int doubles,
                            int only_piercing, std::uint64_t* count, const int* stop) {
   return guarded([&] {

@@ -32,7 +32,7 @@ std::string differing(const Agreement& a, const std::string& pairs) {
 
 const std::string kSamePairs = "the same pairs";
 
-// Whether the chosen tolerance is the smallest of the sweep. The smallest does not cover ordinary rounding errors.
+// Whether the chosen tolerance is the sweep's smallest, which does not cover ordinary rounding errors.
 bool is_smallest(const Agreed& a) {
   return std::any_of(a.curves.begin(), a.curves.end(),
                      [&](const auto& curve) { return curve.points.front().policy == a.chosen; });
@@ -67,7 +67,7 @@ std::string answer(const AgreeQuestion& q, const Agreed& a) {
       break;
   }
   return fmt::format("No tolerance that was tried keeps the rate of differing verdicts at or under {}. {}: {}; {}.",
-                     q.max_rate, a.chosen.empty() ? "None is better than no policy" : a.chosen + " comes nearest",
+                     q.max_rate, a.chosen.empty() ? "None improves on having no policy" : a.chosen + " comes nearest",
                      found, low);
 }
 

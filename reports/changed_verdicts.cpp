@@ -57,7 +57,7 @@ std::string paired_headline(const Json& verdicts) {
   const std::string unknown =
       totals.unknown.empty()
           ? ""
-          : fmt::format("; for {} changes are not known, because a GPU engine judged their pairs (at most {} changed)",
+          : fmt::format("; changes in {} are not known, because a GPU engine judged their pairs (at most {} changed)",
                         counted(totals.unknown.size(), "lane"), counted(totals.unknown_most, "verdict"));
   if (totals.changed.empty())
     return unknown.empty() ? fmt::format("Nothing changed: all {} of {} are the same, pair by pair",
@@ -115,8 +115,8 @@ std::vector<std::string> changed_sentences(const Json& compare) {
             row.contains(smallest) ? fmt::format(" (smallest: {})", place_of(text_at(row, smallest.c_str()))) : "");
       }
     } else if (row.at("known") == "changed") {
-      text += fmt::format("at least {} and at most {} {} changed, by their counts; which ones is not known",
-                          grouped(least), grouped(most), of);
+      text += fmt::format("by the counts, at least {} and at most {} {} changed; it is not known which", grouped(least),
+                          grouped(most), of);
     } else {
       text += fmt::format("at most {} {} changed, perhaps none; the GPU engine keeps only counts", grouped(most), of);
     }

@@ -38,7 +38,7 @@ std::vector<std::pair<Name, Json>> rates_by_name(const Json& report) {
   return rates;
 }
 
-// A report's strata by name. Meshes or hunts of one name may have different pairs; then their descriptions differ.
+// A report's strata by name. If meshes or hunts of one name have different pairs, their descriptions differ.
 std::map<std::string, Json> strata_of(const Json& report) {
   std::map<std::string, Json> rows;
   for (const Json& row : report.at("strata")) rows[row.at("id")] = row;
@@ -56,7 +56,7 @@ bool is_common(const std::string& id, const std::map<std::string, Json>& l, cons
   return l.contains(id) && r.contains(id) && l.at(id).at("describes") == r.at(id).at("describes");
 }
 
-// Whether both reports have the same strata in the same shares. If not, kinds and overall rates are not compared.
+// Whether both reports have the same strata in the same shares. Otherwise, kinds and overall rates are not compared.
 bool mixed_alike(const Json& l, const Json& r) {
   const auto of_l = strata_of(l), of_r = strata_of(r);
   const double all_l = pairs_of(l), all_r = pairs_of(r);
@@ -77,8 +77,8 @@ std::set<std::string> lanes_of(const Json& report, const Json& subject) {
   return lanes;
 }
 
-// The probability that at most `count` of the `all` errors of both campaigns fall into the first campaign, if every
-// pair is equally likely to err. pairs: the number of pairs of each campaign.
+// The probability that at most `count` of the `all` errors of both campaigns fall into the first campaign, if an
+// error is equally likely on every pair. pairs: the number of pairs of each campaign.
 double chance_of_at_most(double count, double all, const double (&pairs)[2]) {
   const auto log_choose = [](double n, double k) {
     return std::lgamma(n + 1) - std::lgamma(k + 1) - std::lgamma(n - k + 1);
@@ -186,8 +186,8 @@ Json only_in(const Json& kinds, const Json& others, const Json& report, const Js
   return rows;
 }
 
-// The kinds of subjects with a changed verdict. Other kinds may differ although no verdict changed, because `graze
-// minimize` finds the cause on one pair of each signature, not always on the same one.   verdicts: null if unknown.
+// The kinds of subjects with a changed verdict. Kinds of other subjects may also differ, because `graze minimize`
+// finds the cause on one pair of each signature, and not always on the same pair.   verdicts: null if unknown.
 Json of_changed(const Json& kinds, const Json& verdicts) {
   if (verdicts.is_null()) return kinds;
   std::set<std::string> subjects;
@@ -250,7 +250,7 @@ std::string changes_of(const std::string& lane, const Json& verdicts) {
   return fmt::format("{} {}", number, most == 1 ? "verdict differs" : "verdicts differ");
 }
 
-// A sentence for each toolchain and scalar for which the compiler fuses other products in the second campaign.
+// A sentence for each toolchain and scalar for which the compilers of the two campaigns fuse different products.
 std::vector<std::string> plan_differences(const Json& then, const Json& now, const Json& verdicts) {
   std::vector<std::string> sentences;
   for (const Json& old : then.value("subjects", Json::array())) {
@@ -310,7 +310,7 @@ Json differences_of(const Json& after, const Json& before, const Json& verdicts)
   const auto compiler = [](const Json& run) { return printable(run.at("build").value("compiler", "")); };
   if (compiler(now) != compiler(then) && has_contracted_lane(before) && has_contracted_lane(after))
     rows.push_back(
-        fmt::format("The compiler of Graze differs, so lanes of cpu-fma may fuse other products: {} before, {} after.",
+        fmt::format("The compiler of Graze differs, so cpu-fma lanes may fuse different products: {} before, {} after.",
                     compiler(then), compiler(now)));
   const auto commit = [](const Json& run) { return run.at("build").at("commit").get<std::string>(); };
   if (commit(now) != commit(then))
@@ -392,7 +392,7 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
   Json differences = differences_of(report, before, verdicts);
   if (!alike)
     differences.push_back(
-        "All strata together and kinds of failure are not compared: the campaigns have different strata, or the same "
+        "Rates over all strata and kinds of failure are not compared: the campaigns have different strata, or the same "
         "in different shares.");
   if (!kinds_known)
     differences.push_back("Kinds of failure are not compared: run `graze minimize` on both campaigns first.");

@@ -11,8 +11,8 @@ namespace graze::reports {
 
 // A rate counts as changed if chance makes so large a difference in fewer than one in a million comparisons. A kind of
 // failure counts as gained or lost if one campaign has none of its signatures although at least kLeastSignatures were
-// expected, which is about as rare by chance. On the same pairs, one signature is enough if a verdict of the subject
-// changed.
+// expected, which happens by chance about as rarely. If both campaigns ran on the same pairs, one signature is enough,
+// provided that a verdict of the subject changed.
 inline constexpr double kLeastChance = 1e-6;
 inline constexpr double kLeastSignatures = 14;
 
@@ -23,7 +23,7 @@ inline constexpr double kLeastSignatures = 14;
 //
 // If both campaigns ran on the same pairs, every different count is a change, and the headline is about `verdicts`.
 // This list has a row for each lane and stratum: {"lane", "stratum", "pairs", "known": "same", "changed" or "unknown",
-// "least", "most"}. The last two are bounds on the number of changed verdicts. If the changes were counted, the row
+// "least", "most"}. "least" and "most" bound the number of changed verdicts. If the changes were counted, the row
 // also has "broken" (the number that became wrong), "mended" (the number that became right),
 // "smallest_broken" and "smallest_mended".
 //
@@ -35,7 +35,7 @@ void add_comparison(nlohmann::ordered_json& report, const nlohmann::ordered_json
                     const nlohmann::ordered_json& verdicts = nullptr);
 
 // Whether both campaigns are complete and ran on the same pairs. If so, a different count means a different verdict.
-// False for hunts, because their pairs depend on the lanes.   Requires: two reports.
+// False for hunts, because a hunt's pairs depend on the lanes.   Requires: two reports.
 bool same_pairs(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after);
 
 inline constexpr const char* kAllStrata = "all strata";  // the stratum of rates over all strata

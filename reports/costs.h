@@ -20,7 +20,7 @@ struct Costs {
   int passes = 0;
   std::vector<std::vector<std::optional<Cost>>> of_stratum;  // [lane][stratum]
 
-  // The lane's mean cost over the strata, weighted by their pairs. Nothing unless the lane was timed on all of them.
+  // The lane's mean cost over the strata, weighted by their pairs. Nothing unless the lane was timed on each stratum.
   std::optional<Cost> of(std::size_t lane, const std::vector<std::size_t>& strata) const;
 };
 

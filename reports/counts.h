@@ -55,7 +55,7 @@ struct CampaignCounts {
   std::vector<GroupCounts> groups;  // groups that have pairs
   StratumCounts total;              // id empty
 
-  // Both return the lane's index, or nothing if it did not run. counterpart: the same lane in another variant.
+  // Both return the lane's index, or nothing if it did not run. counterpart: the lane that differs only in variant.
   std::optional<std::size_t> find(const LaneName& name) const;
   std::optional<std::size_t> counterpart(std::size_t lane, std::string_view variant) const;
   const StratumCounts* stratum(std::string_view id) const;

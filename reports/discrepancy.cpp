@@ -151,7 +151,7 @@ std::string origins_table(const Json& origins, const Screen& screen) {
   return wrapped(
              fmt::format("Contraction changes the verdict on {} of {} examined pairs. Source lines whose products are "
                          "fused, by effect (values, verdicts alone: how many change if only this line is fused; "
-                         "verdicts fixed: how many changed verdicts return if only this line is not fused):",
+                         "verdicts fixed: how many changed verdicts change back if only this line is not fused):",
                          grouped(number_at(origins, "verdicts")), grouped(number_at(origins, "pairs"))),
              screen.columns) +
          table.text(screen);

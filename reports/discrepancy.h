@@ -15,7 +15,7 @@
 namespace graze::reports {
 
 // {"lanes": [{"first", "second", "strata": {stratum: counts}}]}; docs/formats.md describes the counts.
-// found, origins: one entry for each comparison. Origins are the source lines where its differences start, if known.
+// found, origins: one entry for each comparison. Origins are the source lines where differences start, if known.
 nlohmann::ordered_json discrepancy_json(const analysis::DiscrepancySpec& spec, const analysis::Discrepancies& found,
                                         const std::vector<std::optional<analysis::Origins>>& origins);
 
@@ -41,7 +41,7 @@ std::string discrepancy_changes(const nlohmann::ordered_json& before, const nloh
 
 // Returns five sentences: how often values and verdicts differ, where differences start, which lane is closer to the
 // exact values, how close to zero the values with different signs are, and the remedy. If one of these is unknown, its
-// sentence says so. After these, returns a sentence for each comparison of only the verdicts.
+// sentence says so. Then follows a sentence for each comparison that has only verdicts.
 // json: the contents of discrepancy.json.
 std::vector<std::string> discrepancy_answer(const nlohmann::ordered_json& json);
 

@@ -150,7 +150,7 @@ TEST_F(DiscrepancyResult, EveryNumberIsCompared) {
   const Screen wide{.columns = 200};
   const std::string same = discrepancy_changes(json_, json_, wide);
   EXPECT_EQ(same.find("0 numbers differ, "), 0u) << same;
-  EXPECT_EQ(same.find("in one result alone"), std::string::npos) << same;
+  EXPECT_EQ(same.find("in only one result"), std::string::npos) << same;
   Json other = json_;
   Json& questions = other["lanes"][0]["total"]["questions"];
   std::reverse(questions.begin(), questions.end());
@@ -160,7 +160,7 @@ TEST_F(DiscrepancyResult, EveryNumberIsCompared) {
   EXPECT_EQ(discrepancy_changes(json_, changed, wide).find("1 numbers differ, "), 0u)
       << discrepancy_changes(json_, changed, wide);
   questions[0]["question"] = "another";
-  EXPECT_NE(discrepancy_changes(json_, other, wide).find(" are in one result alone"), std::string::npos);
+  EXPECT_NE(discrepancy_changes(json_, other, wide).find(" are in only one result"), std::string::npos);
 }
 
 TEST_F(DiscrepancyResult, ThePageNamesEveryQuestionThatDiffers) {

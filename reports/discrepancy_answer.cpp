@@ -161,7 +161,7 @@ std::string mending_sentence(const Json& json) {
     return "No remedy was measured here: compare cpu with cuda-nofma (-fmad=false), and see `graze tune "
            "--agree`.";
   if (others > 0)
-    return fmt::format("-fmad=false does not mend it: in {} of {} values still differ, on up to {} of {}.", others,
+    return fmt::format("-fmad=false does not mend it: in {} of {}, values still differ, on up to {} of {}.", others,
                        counted(lanes, "comparison"), grouped(most), counted(pairs, "pair"));
   return fmt::format(
       "-fmad=false mends it: cpu and cuda-nofma have the same bits in all {} values on {} of triangles ({}). `graze "

@@ -115,8 +115,8 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
   });
   if (table.rows() > 0) text += table.text(screen);
   std::string counts = fmt::format("{} numbers differ, {} are the same", grouped(differ), grouped(same));
-  if (alone > 0) counts += fmt::format(", and {} are in one result alone", grouped(alone));
-  if (differ > table.rows()) counts += fmt::format("; the table shows the {} of them in totals", grouped(table.rows()));
+  if (alone > 0) counts += fmt::format(", and {} are in only one result", grouped(alone));
+  if (differ > table.rows()) counts += fmt::format("; the table has the {} that are in totals", grouped(table.rows()));
   return text + wrapped(counts + '.', screen.columns);
 }
 

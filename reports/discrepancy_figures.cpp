@@ -176,7 +176,7 @@ std::string extremes_figures(const Json& of) {
       figures += extremes_figure(
           fmt::format("Shares of the pairs of {} that differ, by {}", stratum,
                       scale ? "scale" : "distance from the origin"),
-          scale ? "largest coordinate: at least" : "largest coordinate, in sizes of the pair: at least", places);
+          scale ? "largest coordinate: at least" : "largest coordinate / size of the pair: at least", places);
     }
   }
   return figures;

@@ -118,8 +118,8 @@ std::string lines_table(const Json& origins) {
             simplest_cell(line) + "</tr>\n";
   }
   text +=
-      "</table></div>\n<p>A value starts to differ by one rounding at some line. The table shows how far it has moved "
-      "by the time it is compared; cancellation moves it further:</p>\n<div "
+      "</table></div>\n<p>Each value first differs at some line, because of a single rounding there. The table shows "
+      "how far the value has moved by the time it is compared; cancellation moves it further:</p>\n<div "
       "class=\"wide\"><table><tr><th>value</th><th>first line, "
       "most often</th><th>median</th><th>99 %</th><th>largest</th></tr>\n";
   for (const Json& start : origins.at("starts")) {

@@ -183,7 +183,7 @@ TEST_F(FailureCards, HaveTheirProgramsAndTheStoredMaps) {
       EXPECT_TRUE(contains(error.what(), "graze minimize")) << error.what();
     }
   }
-  // Even a sealed file must have possible contents: a lane that did not run is rejected.
+  // Even if the checksum is right, a map of a lane that did not run is rejected.
   Json other = Json::parse(maps);
   other.erase("checksum");
   other["panels"].push_back({{"name", "never_ran/f32/cpu"}, {"shows", "right everywhere"}, {"png", ""}});

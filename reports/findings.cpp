@@ -78,9 +78,9 @@ std::string contraction(const CampaignCounts& counts, const LaneIndices& lanes) 
 
 // The rates were measured on 20,000,000 pairs for each reference triangle.
 constexpr const char* kRateOf2012 =
-    " The thesis saw about 1 in 1,000. In its own algorithm contraction explains 1 in 3,270. The rest is unexplained: "
-    "built for the x87, with the reference triangle of the thesis's special cases, it differs on 1 in 1,300. The "
-    "commands are in docs/measurements.md.";
+    " The thesis saw about 1 in 1,000. Contraction in its own algorithm explains 1 in 3,270. The rest is unexplained. "
+    "Built for the x87, and with the reference triangle of the thesis's special cases, that algorithm differs on 1 in "
+    "1,300. The commands are in docs/measurements.md.";
 
 std::string thesis(const CampaignCounts& counts, const LaneIndices& lanes) {
   const auto drawn = [&](const char* id) {
@@ -207,7 +207,7 @@ std::vector<std::string> answer(const CampaignCounts& counts, const Costs* costs
   std::vector<std::string> said = own_code_answer(counts, kinds), not_known;
   const bool ours = all_published(counts);
   const auto add = [&](Sentence sentence) {
-    // A user's own code is as inexact as a published algorithm, but it is not published.
+    // A user's own code is inexact too, but it is not published.
     constexpr std::string_view kOurs = "published lane";
     for (std::size_t at; !ours && (at = sentence.text.find(kOurs)) != std::string::npos;)
       sentence.text.replace(at, kOurs.size(), "inexact lane");

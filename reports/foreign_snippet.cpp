@@ -31,7 +31,7 @@ std::string cpp_string(std::string_view text) {
   return result + '"';
 }
 
-// Calls the code through a graze_subject, which has a function for one pair or for blocks. subject: points to it.
+// Calls the code through a graze_subject, which has a function for one pair or for blocks. subject: its address in C.
 std::string by_description(std::string_view real, std::string_view scalar, std::string_view subject) {
   return fmt::format(R"(static int decide(const {0}* a, const {0}* b) {{
   const struct graze_subject* subject = {2};

@@ -19,7 +19,7 @@ struct LeagueSubject {
   std::string version, source, convention;
 };
 
-// The limit on drawings beside a page. Libraries' failures are drawn first, the clear ones before the others.
+// The limit on drawings that accompany a page. Libraries' failures are drawn first, the clear ones before the others.
 inline constexpr std::size_t kMostDrawings = 40;
 
 // {"seed", "pairs", "strata", "groups": {group: pairs}, "subjects": [...], "rows": [...], "failures": [...],

@@ -255,7 +255,7 @@ std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const 
                                    : "decides");
   }
   if (!in_source.empty()) text += fmt::format(" ({} your {})", pairs > 0 ? "perhaps" : "such as", in_source);
-  // At other sizes, the code fails at other distances, so no margin is named.
+  // With triangles of other sizes, the code fails at other distances, so no margin is named.
   if (settled > 0) return text + "; make it relative to the triangles' size.";
   std::string trusted;
   for (const auto& [id, which] :

@@ -37,7 +37,7 @@ std::vector<nlohmann::ordered_json> first_kinds(const nlohmann::ordered_json& ki
                                                 std::size_t most);
 
 // Describes what happens on the kind's simplest pair. Starts with "It says disjoint, but …" if the lane is wrong there.
-// Otherwise names the wrong lanes.
+// Otherwise names the lanes that are wrong there.
 std::string kind_sentence(const nlohmann::ordered_json& kind, const std::string& lane);
 
 // A kind's cause and line, with "perhaps" if the cause is not settled: "perhaps logic at mine.cpp:14".
@@ -72,7 +72,7 @@ struct EpsilonEffect {
 };
 
 // Describes whether failures of the lane show an absolute epsilon, and from which margin upwards the lane is right.
-// With an `effect`, gives its counts instead. in_source: the epsilon in the lane's source, such as "1e-6f at
+// If `effect` is given, gives its counts instead. in_source: the epsilon in the lane's source, such as "1e-6f at
 // mine.cpp:9"; empty if none is known.
 std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const nlohmann::ordered_json& kinds,
                           const std::string& in_source = "", const std::optional<EpsilonEffect>& effect = {});

@@ -72,7 +72,7 @@ TEST_F(PageTest, APlainPageOfARestOfAReportIsRefused) {
   EXPECT_GT(refused, 100u);
 }
 
-// Checks that opened elements are closed in order. For the output of plain_page, this is sufficient.
+// Checks that opened elements are closed in order. This is sufficient for the output of plain_page.
 void expect_well_formed(const std::string& text) {
   const std::set<std::string> empty{"meta", "!DOCTYPE"};
   std::vector<std::string> open;

@@ -295,14 +295,14 @@ analysis::PolicyErrors errors_of(const Json& row) {
   return errors;
 }
 
-// Checks that the fixed and broken pairs account for the difference from the lane without a policy on these pairs.
+// Checks that the fixed and broken pairs account for the difference between the errors with and without the policy.
 void expect_relocation(const Json& row, const Json& without) {
   const analysis::PolicyErrors errors = errors_of(row), zero = errors_of(without);
-  expect(errors.pairs == zero.pairs && errors.fixed <= zero.not_right() && errors.broken <= errors.not_right() &&
-             zero.not_right() - errors.fixed == errors.not_right() - errors.broken,
-         fmt::format("errors that differ from {} of {} pairs by the fixed and the broken ones", zero.not_right(),
-                     zero.pairs),
-         row);
+  expect(
+      errors.pairs == zero.pairs && errors.fixed <= zero.not_right() && errors.broken <= errors.not_right() &&
+          zero.not_right() - errors.fixed == errors.not_right() - errors.broken,
+      fmt::format("errors on {} of {} pairs, minus the fixed and plus the broken ones", zero.not_right(), zero.pairs),
+      row);
 }
 
 void expect_relocations(const Json& tuned) {
@@ -381,7 +381,7 @@ void expect_choice(const Json& tuned) {
   expect(result == expected, fmt::format("'{}'", kTuneResults[static_cast<int>(expected)]), tuned["result"]);
 }
 
-// Checks that all rows have costs on the host, or all have costs on a device, which have other fields.
+// Checks that all rows have costs on the host, or all have costs on a device, whose fields differ.
 void expect_costs_of_kind(const Json& row, bool on_device) {
   for (const char* field : {"resident", "with_copies", "registers", "local_bytes", "active_threads"})
     expect(row.contains(field) == on_device, fmt::format("{} for all lanes or for none", field), row);
@@ -493,7 +493,7 @@ void expect_possible_tuned(const Json& tuned) {
     return sentence.get<std::string>().starts_with("Scale break:");
   });
   expect(static_cast<std::size_t>(breaks) == tuned.at("scale_break").size(),
-         fmt::format("{} scale breaks, as its sentences say", breaks), tuned["scale_break"]);
+         fmt::format("{} scale breaks, as many as in its sentences", breaks), tuned["scale_break"]);
 }
 
 void expect_possible_pareto(const Json& pareto) {

@@ -100,7 +100,7 @@ std::string price(const CampaignCounts& counts, const Costs* costs, const LaneIn
                      rate_words(wrong_share(counts, *other).share));
 }
 
-// The best lane, according to `better`, outside the family of `than`. Nothing if there is none.
+// The best lane, according to `better`, outside the family of the lane `than`. Nothing if there is none.
 template <class Better>
 std::optional<std::size_t> first_of_others(const CampaignCounts& counts, const LaneIndices& lanes, std::size_t than,
                                            Better better) {

@@ -33,7 +33,7 @@ CampaignCounts counts_with(const std::vector<MadeLane>& lanes,
   return counts_of(summary);
 }
 
-// Costs of each lane on uniform and on degenerate, with a spread of 1 ns. A cost of 0 means that it was not timed.
+// Costs of each lane on the strata uniform and degenerate, with a spread of 1 ns; 0 if the lane was not timed there.
 Costs costs_with(const std::vector<std::pair<double, double>>& of_lanes) {
   Costs costs{"a machine", 9, {}};
   for (const auto& [uniform, degenerate] : of_lanes) {
@@ -109,7 +109,7 @@ TEST(Recommendations, TheWorstLaneIsAvoidedWhereIntervalsAreApart) {
       lane_to_avoid(counts_with({{"moller_1997/f32/cpu", 900}, {"separating_axes/f64/cpu", 890}}), nullptr).text,
       "Which published lane is worst is not settled: the 95 % intervals of moller_1997/f32/cpu, wrong on 8.61 % to "
       "9.41 % of all pairs, and separating_axes/f64/cpu, on 8.51 % to 9.31 %, overlap.");
-  // Variants of one algorithm may have overlapping intervals; which lane to avoid is still settled.
+  // Even if the intervals of one algorithm's variants overlap, it is settled which lane to avoid.
   EXPECT_TRUE(lane_to_avoid(counts_with({{"moller_1997/f32/cpu", 900},
                                          {"moller_1997/f32/cpu-fma", 899},
                                          {"separating_axes/f64/cpu", 100}}),

@@ -34,7 +34,7 @@ using fuzz::Json;
 namespace {
 
 // The machines that the campaign ran on, if their names are known. Only runs that recorded pairs count. If no run did,
-// because each was killed after deciding its pairs, all recorded runs count.
+// because each was killed before it recorded the pairs it had decided, all recorded runs count.
 Json machines(const std::filesystem::path& directory) {
   std::set<std::string> names, without_pairs;
   for (const Json& run : fuzz::read_timings(directory)) {
@@ -200,7 +200,7 @@ Json read_checked(const std::filesystem::path& file, void (*expect_possible)(con
   return found;
 }
 
-// A sentence if `graze discrepancy` wrote counts of other pairs into the campaign's folder; otherwise empty.
+// A sentence if `graze discrepancy` wrote counts on other pairs into the campaign's folder; otherwise empty.
 std::string other_pairs(const std::filesystem::path& directory, const Json& discrepancy) {
   const Json spec = fuzz::recorded_spec(directory);
   if (!spec.is_object()) return "";

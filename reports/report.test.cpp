@@ -173,7 +173,7 @@ TEST_F(ReportTest, ComparesTwoCampaigns) {
     EXPECT_TRUE(lost["key"].get<std::string>().starts_with("moller_1997/")) << lost;
 }
 
-// Collects one value's path for each name. In a list, only the first element is visited.
+// Collects the path of every value, but visits only the first element of each list.
 void collect(const Json& value, const Json::json_pointer& at, std::vector<Json::json_pointer>& places) {
   if (!at.empty()) places.push_back(at);
   if (value.is_object()) {

@@ -12,7 +12,7 @@
 namespace graze::reports {
 namespace {
 
-// Appends the numbers of a line that starts with `begins`.
+// If the line starts with `begins`, appends its numbers.
 void read_numbers(std::string_view line, std::string_view begins, std::vector<float>& numbers) {
   if (!line.starts_with(begins)) return;
   const std::string text(line.substr(begins.size()));

@@ -38,7 +38,7 @@ std::string snippet(SnippetKind kind, const SnippetCase& found);
 std::string_view embedded(std::string_view path);
 
 // Returns core/algorithms/ID.h and everything that it includes as one source, without the project's own includes and
-// include guards. With `with_policy`, also the code that decides under a policy.
+// include guards. If `with_policy` is set, adds the code that decides under a policy.
 std::string amalgamated_source(std::string_view algorithm_id, bool with_policy = false);
 
 // The text of the source line at a place such as "core/vec3.h:52", without its indentation. Empty if that line is in no

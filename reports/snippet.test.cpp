@@ -28,7 +28,7 @@ TEST(Snippet, HoldsTheAlgorithmsOwnSource) {
 }
 
 TEST(Snippet, HoldsNothingItDoesNotNeed) {
-  // An AlgorithmInfo begins with its algorithm's id in quotes. The source must contain its own id and no other.
+  // An AlgorithmInfo begins with its algorithm's id in quotes. A source must contain only its own algorithm's id.
   for (const Lane& lane : published_lanes()) {
     const std::string source = amalgamated_source(lane.info->id);
     for (const Lane& other : published_lanes())
@@ -70,7 +70,7 @@ TEST(Snippet, ObjDecimalsReadAsTheSameBits) {
 }
 
 // The corpus has every kind of contact between triangles, segments and points: in space, in one plane and on one line.
-// Every finite pair of float32 is tested.
+// Each of its finite float32 pairs is tested.
 TEST(Snippet, PythonDecidesTheWholeCorpus) {
   if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "graze-python-snippets";

@@ -56,7 +56,7 @@ TEST(Bounds, ATunedPolicysBoundIsNotRoundedToWhatWasAsked) {
   EXPECT_NE(said.find("are under 0.021, and 0.02 was asked for"), said.npos) << said;
 }
 
-// A comparison with 0 treats values of exactly 0 differently from a comparison with a small number.
+// A tolerance of 0 treats values that are exactly 0 differently from a small positive tolerance.
 TEST(Tuning, ZeroIsNotSoldAsASmallValue) {
   const subjects::TunableSource source{"mine.cpp", "", {}, {"kEps", "1e-6f", 1e-6, {{0, 0, 3}}}};
   const TuneQuestion question{"mine/f32/cpu", analysis::Forbid::any, 0.02, 0.1, &source};

@@ -85,8 +85,8 @@ void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
   out << '\n' << table.text(screen);
 }
 
-// Describes which exact decisions support the counts. All of them agree, because a campaign stops if two differ.
-// doubles: whether some pairs have doubles. If so, GMP also decides the pairs whose verdict changes in float32.
+// Describes which exact decisions support the counts. These decisions agree, because a campaign stops if two differ.
+// doubles: whether some pairs have doubles. If so, GMP also decides those with another verdict in float32.
 std::string decided_by(std::uint64_t disagreements, const Json& oracle, bool doubles) {
   const std::uint64_t exact = oracle["exact"], gmp = oracle["gmp"];
   if (exact > 0) {

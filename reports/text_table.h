@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A table for a terminal. Its columns are as wide as their cells. If headers make the table too wide for the
-// screen, they are broken into lines or placed above it in steps. If that is not enough, it is split into blocks.
+// A table for a terminal. Its columns are as wide as their cells. If headers make the table too wide for the screen,
+// they are broken into lines or placed above it in steps. If that is not enough, the table is split into blocks.
 #pragma once
 
 #include <string>

@@ -80,9 +80,9 @@ std::string pairs_to_show(const TuneQuestion& q, const Tuned& t) {
                        grouped(static_cast<std::uint64_t>(std::ceil(std::log(0.05) / std::log1p(-q.max_rate)))));
   for (std::uint64_t times = 2; times <= 1024; times *= 2) {
     if (analysis::upper_bound(times * errors, times * pairs) <= q.max_rate)
-      return fmt::format("{} pairs (--pairs) with errors at the same rate would show it.", grouped(times * pairs));
+      return fmt::format("{} pairs (--pairs) with errors at this rate would suffice.", grouped(times * pairs));
   }
-  return "The rate is too near the limit, or above it, so more pairs cannot show it.";
+  return "The rate is too near the limit, or above it, so more pairs would not help.";
 }
 
 std::string answer(const TuneQuestion& q, const Tuned& t) {
@@ -106,7 +106,7 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
     case TuneResult::not_confirmed:
       return fmt::format(
           "Not settled: {}. It keeps {} at or under {} on the pairs that it was chosen on, but not on these. "
-          "More pairs (--pairs) or a stricter --max-rate may find one that does.",
+          "More pairs (--pairs) or a stricter --max-rate may lead to a choice that does.",
           of, words(q.forbid), q.max_rate);
     case TuneResult::not_useful:
       return fmt::format(
@@ -124,8 +124,8 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
       setting(q), words(q.forbid), q.max_rate, of);
 }
 
-// Warns if the chosen value is 0 and errs differently from the next smallest value; otherwise empty. A comparison with
-// 0 also decides values that are exactly 0, for example where triangles touch.
+// Warns if the chosen value is 0 and errs differently from the next smallest value; otherwise empty. If
+// triangles touch, a compared value may be exactly 0, which a tolerance of 0 may treat differently from a positive one.
 std::string zero_words(const TuneQuestion& q, const Tuned& t) {
   if (t.curves.empty()) return "";
   const std::vector<PolicyErrors>& points = t.curves[0].points;

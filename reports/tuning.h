@@ -34,8 +34,8 @@ struct TuneQuestion {
 // Each sentence starts with its topic and names the pairs that its numbers describe.
 std::vector<std::string> tuning_sentences(const TuneQuestion& question, const analysis::Tuned& tuned);
 
-// Returns a table of the best tolerance of each curve: on how many of the pairs used to choose it fixes the verdict,
-// breaks it, or leaves it wrong. Tolerances that change no verdict on these pairs are left out.
+// Returns a table of the best tolerance of each curve. It counts the verdicts that the tolerance fixes, breaks or
+// leaves wrong on the pairs used to choose. Tolerances that change no verdict on these pairs are left out.
 std::string tuning_table(const TuneQuestion& question, const analysis::Tuned& tuned, const Screen& screen);
 
 nlohmann::ordered_json tuning_json(const TuneQuestion& question, const analysis::Tuned& tuned);

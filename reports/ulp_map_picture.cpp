@@ -17,8 +17,8 @@ namespace graze::reports {
 namespace {
 
 // One colour for each kind of cell, in order. Ink and paper come before the colours of failing foreign code. Correct
-// verdicts are grey. Wrong verdicts are vermilion and blue from Okabe and Ito's palette, which also differ in
-// lightness.
+// verdicts are grey. Wrong verdicts are vermilion and blue from Okabe and Ito's palette; these also differ
+// in lightness.
 constexpr std::uint8_t kPalette[][3] = {{0xee, 0xee, 0xee}, {0xaa, 0xaa, 0xaa}, {0xd5, 0x5e, 0x00}, {0x00, 0x72, 0xb2},
                                         {0xf0, 0xe4, 0x42}, {0xcc, 0x79, 0xa7}, {0x00, 0x00, 0x00}, {0xff, 0xff, 0xff},
                                         {0x00, 0x9e, 0x73}, {0x56, 0xb4, 0xe9}, {0xe6, 0x9f, 0x00}};

@@ -34,7 +34,7 @@ constexpr std::string_view kModules[] = {{kModuleF32, sizeof kModuleF32 - 1}, {k
 constexpr std::uint64_t kReplaySeed = 20120131;
 constexpr std::uint64_t kReplayed = 16;  // pairs of each stratum
 
-// The bits of the numbers. If the type is float32, it must hold them exactly.
+// The bits of the numbers. If the type is float32, every number must be a float32.
 std::string bits_of(std::span<const double> numbers, Scalar type) {
   std::string text;
   for (const double x : numbers)

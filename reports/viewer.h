@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The viewer is one HTML file. In it, graze.wasm or graze_f64.wasm decides a pair again after each change.
+// The viewer is one HTML file, in which graze.wasm or graze_f64.wasm decides a pair again after each change.
 #pragma once
 
 #include <array>
@@ -30,8 +30,8 @@ struct ViewedPair {
 struct Viewed {
   std::string title;              // title of the list of pairs
   std::vector<ViewedPair> pairs;  // if empty, the special cases of 2012 are shown
-  // The triangles of a mesh or a query, shown against the first triangle of a pair. If they are float32, the pairs must
-  // be float32 too.
+  // The triangles of a mesh or a query, shown against the first triangle of a pair. If all pairs are
+  // float32, the triangles must be float32 too.
   std::vector<std::array<Vec3<double>, 3>> triangles;
   std::vector<std::size_t> ids;           // ids of the triangles; if empty, they are numbered in order
   bool opens_with_triangles = false;      // show all triangles at once instead of a pair

@@ -31,8 +31,8 @@ PAIRS = [
     "degenerate:1:4",
     "shared_edge:1:16",
     "shared_edge:21:21",
-    # Numbers of 2^72: in exact arithmetic, the lane's path needs more bits than the path that exact arithmetic itself
-    # takes. Also a pair whose cause can be read from its numbers.
+    # Coordinates around 2^72: in exact arithmetic, the lane's path needs more bits than the path that exact arithmetic
+    # itself takes. Also a pair whose cause can be read from its numbers.
     "extreme_scale:1:105",
     "mixed_scale:1:57",
     "extreme_scale:1:46",

@@ -58,7 +58,7 @@ for framework in ("gtest", "catch2", "doctest"):
     expect(re.search(passed, text), f"{framework}: one failure alone in {text}")
     if framework != "gtest":
         continue
-    # The command in the message explains the pair in the message.
+    # The command in the message must explain the pair in the message.
     command = re.search(r"Why: (echo .*)", text)[1].replace("YOUR_FILE", "own")
     (prefix / "build" / "own.cpp").write_text(f'#include "{args.examples}/overlap.h"\n')
     path = str(pathlib.Path(args.graze).parent) + os.pathsep + os.environ["PATH"]

@@ -85,7 +85,7 @@ Pair smallest_like(Pair pair, const Tested& tested) {
   return pair;
 }
 
-// The shortest decimal of this float32: "5" for 5.0. A literal has an f if it has a point or an exponent: "1e30f".
+// The shortest decimal of this float32: "5" for 5.0. A literal with a point or an exponent ends with f: "1e30f".
 std::string number(float value, bool literal) {
   char text[32];
   const std::to_chars_result end = std::to_chars(text, text + sizeof text, value);

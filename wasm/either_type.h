@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Functions for pairs of each coordinate type. The modules use them, and so does reference.cpp.
+// Functions for pairs of each coordinate type. The modules and reference.cpp use them.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ inline void draw(DoublePair& pair, std::uint64_t seed, strata::Stratum stratum, 
 }
 
 // Certified bounds of |margin| in the unit of the coordinates. For doubles, the bounds are 0 and infinity if the
-// exponents of the coordinates are too far apart for the numbers of core/margin. Requires: finite coordinates;
+// exponents of the coordinates are too far apart for core/margin's number types. Requires: finite coordinates;
 // `verdict` is the pair's true verdict, not declined.
 inline MarginBounds bounds_of(const Pair& pair, Verdict verdict) { return margin_bounds(pair, verdict); }
 inline MarginBounds bounds_of(const DoublePair& pair, Verdict verdict) {

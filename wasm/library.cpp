@@ -13,7 +13,7 @@
 
 // wasi-libc's fmaf is wrong if the result is subnormal and halfway between two numbers. Here the product is exact in
 // double, and the sum is rounded to odd (Boldo and Melquiond 2008). The sum's last bit shows whether the sum was
-// inexact, so the second rounding gives the same result as one rounding.
+// inexact, so the second rounding gives the same result as a single rounding.
 extern "C" float fmaf(float x, float y, float z) {
   const double product = double{x} * double{y}, addend = z;
   const double sum = product + addend, part = sum - product;
@@ -24,15 +24,15 @@ extern "C" float fmaf(float x, float y, float z) {
   return static_cast<float>(std::bit_cast<double>(bits));
 }
 
-// Calls wasi-libc's fma unless z is zero. For a zero z, wasi-libc would add the rounded product, and lose the sign of a
+// Calls wasi-libc's fma unless z is zero. If z is zero, wasi-libc would add the rounded product, and lose the sign of a
 // product that rounds to -0. The linker (--wrap) replaces calls of fma with calls of this function.
 extern "C" double __real_fma(double x, double y, double z);
 extern "C" double __wrap_fma(double x, double y, double z) {
   return z == 0 && x != 0 && y != 0 ? x * y : __real_fma(x, y, z);
 }
 
-// The module has no exceptions: a throw ends the call with a trap, which JavaScript catches. The module's functions
-// never pass arguments for which a function throws.
+// The module has no exceptions: a throw ends the call with a trap, which JavaScript catches. The module's code
+// never calls a function with arguments for which it throws.
 extern "C" void* __cxa_allocate_exception(std::size_t) { __builtin_trap(); }
 extern "C" void __cxa_throw(void*, void*, void (*)(void*)) { __builtin_trap(); }
 
@@ -84,7 +84,7 @@ Verdict decide_fusing(const Lane& lane, const AnyPair& pair, std::span<const std
 
 }  // namespace cuda
 
-// These backends have no descriptions of lanes, which would need output streams.
+// These backends do not describe lanes, because descriptions would need output streams.
 namespace backends {
 const Backend& backend_of(const Lane& lane) {
   constexpr auto own_code = [](const Lane& of) { return of.decide; };

@@ -135,8 +135,8 @@ GRAZE_EXPORT(parse) int parse() {
   return value.has_value();
 }
 
-// Sets the policy of all lanes to the policy in the text, until the next call. Requires: abs:E, rel:K, bound, filtered,
-// or an empty text for no policy.
+// Sets the policy of all lanes to the policy in the text, until the next call of this function. Requires: abs:E, rel:K,
+// bound, filtered, or an empty text for no policy.
 GRAZE_EXPORT(set_policy) void set_policy() {
   for (Decider& decider : deciders()) decider.decide = block_under(*decider.lane, text_in);
 }
@@ -164,10 +164,10 @@ GRAZE_EXPORT(trace) int trace(int lane, int count) {
   return true;
 }
 
-// x * y + z, rounded once as in the twins. Only the test uses this function.
+// x * y + z, rounded once, as in the twins. Only the test uses this function.
 GRAZE_EXPORT(fused) float fused(float x, float y, float z) { return __builtin_fmaf(x, y, z); }
 
-// The truth of the first pair. It is exact except for the bounds of the margin; a margin of 0 is exact.
+// The truth of the first pair. It is exact, except that bounds are given for a margin other than 0.
 GRAZE_EXPORT(truth) const TruthOut* truth() {
   const OwnPair& pair = pairs_in[0];
   truth_out = {};
@@ -197,9 +197,9 @@ GRAZE_EXPORT(map_row) void map_row(int x, int y, int up, int columns, int step) 
   }
 }
 
-// Computes the steps of the lane on the first pair, which a float lane first rounds to float32: the comparisons, the
-// values passed to the lane's policy, and the same path with 113 bits. Returns: the number of steps, or -1 if there is
-// no evidence that they are the lane's own.
+// Computes the lane's steps on the first pair: the comparisons, the values passed to the lane's policy, and the same
+// path with 113 bits. A float lane first rounds the pair to float32. Returns: the number of steps, or -1 if there is no
+// evidence that they are the lane's own.
 GRAZE_EXPORT(steps) int steps(int lane) {
   const Lane& of = *deciders()[lane].lane;
   steps_out.clear();

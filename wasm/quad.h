@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compiler's long double with an error bound, as a number type for the algorithms. In WebAssembly, software
-// implements long double, with 113 bits and exponents up to 16383. Two numbers count as equal if their error bounds
-// overlap, as in oracle/multiprecision.h.
+// The compiler's long double with an error bound, as a number type for the algorithms. For WebAssembly, long
+// double is implemented in software, with 113 bits and exponents up to 16383. Two numbers count as equal if their error
+// bounds overlap, as in oracle/multiprecision.h.
 #pragma once
 
 #include <cmath>

@@ -16,7 +16,7 @@ import threading
 from mutating import tokens
 
 NOT_SWITCHED = 98  # exit status, as in switches.h
-# A subscript out of range ends the test. Without these checks, the test might read any value.
+# With these checks, a subscript out of range ends the test. Otherwise the test might read an arbitrary value.
 CHECKED = ["-w", "-D_GLIBCXX_ASSERTIONS", "-fsanitize=bounds-strict,object-size", "-fsanitize-undefined-trap-on-error"]
 MEMORY = 8 << 30  # bytes of address space for each compiler and test
 

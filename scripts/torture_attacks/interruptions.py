@@ -161,7 +161,7 @@ def full_disk(turn):
             command = [*turn.bench.campaign(name), "--out", campaign]
         limit = None
         if enlarge and turn.random.random() < 0.5:
-            # A tmpfs allocates whole pages, so there is more room than the sum of file sizes. A filler file
+            # A tmpfs allocates whole pages, so files take more room than the sum of their sizes. A filler file
             # leaves only `room` bytes free.
             free = os.statvfs(turn.folder / "disk").f_bavail * 4096
             room = turn.random.randrange(0, sum(sizes) * 2)

@@ -6,7 +6,7 @@ import type { Report } from './report';
 
 export const kChartStyle = { background: 'none', fontFamily: 'inherit', fontSize: '12px' };
 
-// Shows the plot to screen readers as one image with this label. Moves the names of the plot's parts to data-mark.
+// Shows the plot to screen readers as one image with this label. Moves the labels of the plot's parts to data-mark.
 export function named(plot: SVGSVGElement | HTMLElement, label: string) {
   for (const part of plot.querySelectorAll('[aria-label]')) {
     part.setAttribute('data-mark', part.getAttribute('aria-label')!);

@@ -35,7 +35,7 @@ export const list = (items: Child[], props: Props = {}) =>
     items.map((item) => h('li', {}, item)),
   );
 
-// A table. An empty title makes an empty corner.
+// A table. An empty title gives an empty cell instead of a header.
 export const table = (name: string, caption: string | null, titles: Child[], rows: Child[]) =>
   h(
     'table',

@@ -132,7 +132,7 @@ export function good_frame(card: Report['cards'][number]): Frame {
   return thin[0] ?? 'both';
 }
 
-// Half of the visible height at zoom 1. The framed points fit from every direction.
+// Half of the visible height at zoom 1, into which the framed points fit from every direction.
 export const framed_half_height = (shape: Shape) => 1.12 * shape.radius;
 
 // The position in pixels of a point on a stage of this width and height.

@@ -34,7 +34,7 @@ const few = ({ wrong }: Cell) => wrong.of < kFew;
 
 const kScale = { axis: 'largest coordinate', short: 'largest coordinate', what: 'largest coordinate' };
 const kOffset = {
-  axis: 'largest coordinate, in sizes of the pair',
+  axis: 'largest coordinate / size of the pair',
   short: 'largest coordinate / size',
   what: 'offset',
 };

@@ -74,7 +74,7 @@ export function kept_pairs(report: Report, { lane, stratum, kind }: Cell, signat
 const twin = (report: Report, lane: number) =>
   report.lanes[lane].evidence?.startsWith('twin') ? ' --executor twin' : '';
 
-// The commands that show one pair of a cell again, and that find all of the cell's pairs.
+// A command that shows one pair of a cell again, and one that finds all of the cell's pairs.
 export const repro_command = (report: Report, { lane }: Cell, pair: string) =>
   `graze repro ${pair} --lanes '${report.lanes[lane].id}'${twin(report, lane)}`;
 

@@ -13,7 +13,7 @@ test.skip(() => !process.env.GRAZE_VIEW, 'this build has no viewer');
 const viewer = (page: Page) => page.locator('#viewer');
 const open_button = (page: Page, number: number) => page.locator(`#kind-${number} .in-viewer`);
 
-// The viewer agrees with the card on the verdicts of all lanes that both have.
+// The viewer must agree with the card on the verdicts of all lanes that both have.
 async function expect_verdicts_of(page: Page, report: Report, number: number) {
   const { truth, verdicts } = report.cards[number - 1];
   await expect(viewer(page).locator('h1')).toContainText(`Card ${number}: `);

@@ -126,7 +126,7 @@ test('each lane has a text on scale, offset, flatness and needles', async ({ pag
         report.extremes.find((row) => row.lane === lane && row.kind === kind)!.says,
       );
   }
-  // Pareto's first lanes are measured on flat pairs and needles too.
+  // The first lanes of pareto.json are also measured on flat pairs and needles.
   await expect(rows.first()).toContainText(/(as right as at 1|errs on none|not settled).*2\^/);
 });
 

@@ -181,8 +181,8 @@ test('if device lanes fail, a card has their program', async ({ report }) => {
     );
   const has = (card: Report['cards'][number], program: string) => card.snippets.some(({ label }) => label === program);
   for (const card of report.cards) {
-    // On the pair shown, some lanes of the subject may fail for another reason than the kind's. Then a program may be
-    // missing from the card.
+    // On the pair shown, some lanes of the subject may fail for another reason than the kind's. The card may
+    // then lack a program.
     const mixed = card.verdicts.some(
       ({ lane, wrong }) =>
         wrong && report.lanes[lane].algorithm === card.kind.subject && !card.kind.lanes.includes(report.lanes[lane].id),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page under test. In every test, it must not fetch anything or write to the console.
+// The page under test, which must never fetch anything or write to the console.
 import { pathToFileURL } from 'node:url';
 import AxeBuilder from '@axe-core/playwright';
 import { expect, test as base, type Locator, type Page } from '@playwright/test';

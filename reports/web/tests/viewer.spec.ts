@@ -27,7 +27,7 @@ const kEndsApart =
 const kOverflow =
   'd01cb3ffcf1130a24fd0e03dd0111e894fc5fbfb4fb67a05cee82f564ea92d6bce58537dceb4244ccf02f27ccf8846bbcf581c374eb351f54dda496bcec4d16a4f5f9694ce41af95'; // extreme_scale:1:2
 
-// Opens the address as a new page. Changing only its hash would race with the page's own changes of the hash.
+// Opens the address as a new page, because changing only the hash would race with the page's own changes to the hash.
 async function open_afresh(page: Page, address: string) {
   await page.goto('about:blank');
   await page.goto(address);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of `graze view` under test. In every test, it must not fetch anything or write to the console.
+// The page of `graze view` under test, which must never fetch anything or write to the console.
 import { execFileSync } from 'node:child_process';
 import { pathToFileURL } from 'node:url';
 import { expect, test as base, type Page } from '@playwright/test';

@@ -4,7 +4,7 @@
 
 namespace tbb {
 
-// Runs the body immediately. Ignores the number of threads, which changes no result.
+// Runs the body immediately. Ignores the number of threads, because it changes no result.
 class task_arena {
  public:
   explicit task_arena(int) {}

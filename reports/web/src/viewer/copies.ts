@@ -47,7 +47,7 @@ export function copies(model: Model, link: (model: Model) => string) {
   );
   return {
     element: section('copies', 'Copy as', h('div', { class: 'chips' }, buttons), shown),
-    // Hides a text that is out of date.
+    // Hides the text if it is out of date.
     update: () => {
       if (!text_now || text_now(model) === text) return;
       shown.replaceChildren();

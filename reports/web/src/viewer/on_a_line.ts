@@ -73,7 +73,7 @@ export function on_a_line(model: Model) {
     return gpu && (gpu === lane ? model.counterpart(lane, 'cpu') : gpu);
   };
 
-  // Shows the ranges that the lane compared on a line, unless it decided before that.
+  // Shows the ranges that the lane compared on a line, unless it decided before comparing any.
   function of_the_lane() {
     const { lane, pair, graze } = model,
       run = graze.steps(pair, lane)?.steps ?? [],

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Extracts from a lane's steps the ranges of both triangles that it compared on a line: intervals on the line where the
-// planes meet, or projections on axes. Adds the same ranges with 113 bits.
+// planes meet, or projections on axes. Adds the same ranges computed with 113 bits.
 import type { Step } from './graze.js';
 
 export type Ends = [number, number]; // low, high
@@ -31,8 +31,8 @@ const span = ([first, ...rest]: number[]): Ends =>
   rest.reduce(([low, high], t) => [t < low ? t : low, t > high ? t : high], [first, first]);
 const same = (x: number, y: number) => x === y || (Number.isNaN(x) && Number.isNaN(y));
 
-// The ends of both triangles' ranges, from the comparisons that sorted the ends. If only the swapped ranges match the
-// step, they are swapped.
+// The ends of both triangles' ranges, from the comparisons that sorted the ends. Swaps the ranges if they match
+// the step only when swapped.
 function in_order(
   name: string,
   [one, other]: { lane: Ends; exact: Ends }[],

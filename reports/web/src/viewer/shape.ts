@@ -57,7 +57,7 @@ function plane(corners: Vec[]): Vec[] {
   ].map(([s, t]) => middle.map((c, k) => c + s * e[k] + t * f[k]) as Vec);
 }
 
-// b's vertices projected onto a's plane; projected_sat compares no other part of b. Empty if a has no plane.
+// b's vertices projected onto a's plane; projected_sat compares no other part of b. Empty if triangle a has no plane.
 function shadow_of(points: Vec[]): Vec[] {
   const [p, q, r] = points,
     n = cross(minus(q, p), minus(r, p)),
@@ -81,7 +81,7 @@ export interface Field {
 const middle_of = (corners: Vec[]) => corners[0].map((_, k) => corners.reduce((sum, p) => sum + p[k] / 3, 0));
 
 // The names of many triangles: a number in the middle of each, and coordinates at its vertices. Triangles that the lane
-// hits come first, then the triangles nearest to the reference.
+// calls intersecting come first, then the triangles nearest to the reference.
 function names_of(field: Field, reference: Vec[], shows: Model['shows'], place: (p: readonly number[]) => Vec) {
   const from = middle_of(reference);
   const named = field.triangles.map((triangle, i) => {
@@ -157,7 +157,7 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
       marks.push({ colour: `--series-${k}`, lines: [cut([place(origin), place(end)])], width: 2 });
     }
   }
-  // Marks the next values of the chosen coordinate, if the distances between them are visible.
+  // Marks the values up to 8 ulps from the chosen coordinate, if the distances between them are visible.
   const chosen = pair[model.chosen],
     at = points[model.vertex / 3],
     axis = model.chosen % 3;

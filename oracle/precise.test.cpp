@@ -141,16 +141,28 @@ TEST(Precise, ExactlySettlesRootsAndQuotients) {
 }
 
 // projected_sat adds terms of degree 3 to coordinates, so near 2^257 even 1,024 bits leave unequal numbers unseparated.
+// The same holds for all algorithms if a pair has coordinates near 2^700 and 2^-700.
 TEST(Precise, ExactlyIsTheSameWithMoreBits) {
-  const double unit[18] = {-2, -2, 1, -1, 0, 1, 0, 1, 2, 1, 0, 2, 2, 0, 2, -2, -1, 2};
-  for (const int exponent : {0, 100, 254, 256, 300, 1000, -257, -300, -1000}) {
-    DoublePair pair;
-    for (int i = 0; i < 18; ++i) coordinates(pair)[i] = std::ldexp(unit[i], exponent);
+  const auto expect_same = [](const DoublePair& pair) {
     for (int algorithm = 0; algorithm < kAlgorithmCount; ++algorithm) {
       const Exactly exactly = decide_exactly(algorithm, pair);
-      EXPECT_TRUE(exactly.settled) << algorithm << " 2^" << exponent;
-      EXPECT_EQ(exactly.verdict, decide_with_bits(algorithm, pair, 40'000)) << algorithm << " 2^" << exponent;
+      EXPECT_TRUE(exactly.settled) << algorithm << hex(pair);
+      EXPECT_EQ(exactly.verdict, decide_with_bits(algorithm, pair, 80'000)) << algorithm << hex(pair);
     }
+  };
+  const double unit[18] = {-2, -2, 1, -1, 0, 1, 0, 1, 2, 1, 0, 2, 2, 0, 2, -2, -1, 2};
+  DoublePair pair;
+  for (const int exponent : {0, 100, 254, 256, 300, 1000, -257, -300, -1000}) {
+    for (int i = 0; i < 18; ++i) coordinates(pair)[i] = std::ldexp(unit[i], exponent);
+    expect_same(pair);
+  }
+  const double s = 0x1p-700, t = 0x1p-699, l = 0x1p700, m = 0x1p701;
+  const DoublePair mixed[] = {{{{0, 0, t}, {-s, 0, 0}, {m, 0, m}}, {{0, s, l}, {0, 0, 0}, {0, s, 0}}},
+                              {{{t, 0, 0}, {0, -s, t}, {0, t, t}}, {{-s, l, l}, {0, t, 0}, {0, 0, 0}}},
+                              {{{0, 0, s}, {0, 0, m}, {0, 0, -s}}, {{l, 0, l}, {l, l, -l}, {0, -s, m}}}};
+  for (const DoublePair& each : mixed) {
+    expect_same(each);
+    for (const int algorithm : {2, 3, 4}) EXPECT_EQ(decide_exactly(algorithm, each).verdict, Verdict::disjoint);
   }
 }
 

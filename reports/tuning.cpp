@@ -186,10 +186,13 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
   }
   const auto changes_nothing = [](const PolicyErrors& point) { return point.changes_nothing(); };
   if (question.source && std::all_of(tuned.curves[0].points.begin(), tuned.curves[0].points.end(), changes_nothing))
-    result.push_back(fmt::format("Dead knob: no value of {} that was tried, from 0 up, changes any verdict here.",
-                                 printable(question.source->epsilon.name)));
+    result.push_back(
+        fmt::format("Dead knob: no value of {} that was tried, from 0 up, changes any verdict on the {} of the choice.",
+                    printable(question.source->epsilon.name), counted(tuned.zero.pairs, "pair")));
   for (const std::string& site : tuned.dead)
-    result.push_back(fmt::format("Dead knob: at {} no tolerance that was tried changes any verdict here.", site));
+    result.push_back(
+        fmt::format("Dead knob: at {} no tolerance that was tried changes any verdict on the {} of the choice.", site,
+                    counted(tuned.zero.pairs, "pair")));
   const analysis::ScaleBreak& scale = tuned.scale;
   for (const auto& [k, at] : {std::pair{scale.up, scale.at_up}, {scale.down, scale.at_down}}) {
     if (k != 0)

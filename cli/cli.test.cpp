@@ -292,6 +292,9 @@ TEST_F(Cli, ReproRunsStoredCasesAndNoticesChange) {
   const Ran changed = shell("sed 's|/22/|/21/|' c/" + first + " > changed.pairs; graze repro changed.pairs");
   EXPECT_EQ(changed.status, 1);
   EXPECT_TRUE(has(changed.out, {"CHANGED"}));
+  const Ran right = shell("sed 's/signature=[^ ]*/signature=foo/' c/" + first + " > foo.pairs; graze repro foo.pairs");
+  EXPECT_EQ(right.status, 1);
+  EXPECT_TRUE(has(right.out, {"CHANGED, recorded: foo"}));
   const Ran truth = shell("sed 's/truth=[a-z]*/truth=declined/; s/margin=/margin=1/' c/" + first +
                           " > other.pairs; graze repro other.pairs");
   EXPECT_EQ(truth.status, 1);

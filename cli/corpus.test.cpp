@@ -51,6 +51,7 @@ TEST_F(CorpusVerb, WhatNoLaneCanConfirmIsNotAdded) {
   EXPECT_TRUE(has(some.err, {" not added: no lane that was wrong on them runs here"}));
   EXPECT_FALSE(has(shell.file("corpus/regression/cases.pairs"), {"/guigue"}));
   expect_error(add + " --corpus none --signatures '*guigue_devillers_2003:*'", 1, {"c", "not added", "--lanes"});
+  expect_error(add + " --corpus none --signatures '*guigue_devillers_2003:*,nosuch*'", 1, {"c", "'nosuch*'"});
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "none/cases.pairs"));
   expect_error("graze corpus add c/cases/$(ls c/cases | head -n 1) --signatures nosuch --corpus none", 2,
                {"--signatures", "--top"});

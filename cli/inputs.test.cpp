@@ -169,6 +169,8 @@ TEST_F(Inputs, WhatFloat32MakesOfDecimalsIsSaid) {
     EXPECT_TRUE(has(ran.out + ran.err, {note})) << command;
     expect_error(command + " --exact-input", 2, {"near.pairs:1", "\"1.00000000001\"", "--exact-input", "12"});
   }
+  for (const char* what : {"near.pairs", "."})
+    expect_error(std::string("graze view --exact-input --out v.html ") + what, 2, {"near.pairs:1", "--exact-input"});
   // A hexadecimal number that float32 cannot represent makes the pair a pair of doubles.
   const Ran hex = shell(
       "echo '0 0 1 1 0 1 0 1 1  0 0 0x1.0000000000001p0 1 0 0x1.0000000000001p0 0 1 "

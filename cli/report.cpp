@@ -43,10 +43,12 @@ void say_what_the_page_is() {
 // Writes NAME.html, NAME.json, costs.json and tables to the directory.   Returns: the names of these files, the page
 // first.
 std::vector<std::string> write_report(const fs::path& directory, const Json& report, const char* name) {
-  const Json costs = reports::make_costs(directory);
+  Json costs = reports::make_costs(directory);
+  const Json kept = fuzz::sealed(report);
+  if (!costs.is_null()) costs["report"] = kept.at("checksum");
   const std::string html = reports::page(report, costs, reports::make_choices(directory));
   const fuzz::FolderLock alone(directory, fuzz::FolderLock::WhenTaken::refuse);
-  std::vector<Result> results = {{fmt::format("{}.json", name), reports::report_text(fuzz::sealed(report))},
+  std::vector<Result> results = {{fmt::format("{}.json", name), reports::report_text(kept)},
                                  {fmt::format("{}.html", name), html}};
   if (!costs.is_null()) results.push_back({"costs.json", reports::report_text(fuzz::sealed(costs))});
   for (const reports::CsvTable& table : reports::csv_tables(directory, report))

@@ -142,6 +142,9 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
     expect_error("graze report --from c/report.json --out r.html", 1, {"c/costs.json"});
   }
   write("c/costs.json", costs);
+  expect_done(std::string(kFuzz) + "--seed 2 --out other && graze report other && cp other/costs.json c/costs.json");
+  expect_error("graze report --from c/report.json --out r.html", 1, {"c/costs.json", "another report"});
+  write("c/costs.json", costs);
 
   nlohmann::ordered_json report = shell.json("c/report.json");
   for (const char* part : {"count", "of", "share"}) {
@@ -272,6 +275,22 @@ TEST_F(Report, ForeignFilesBesideTheDatabaseStay) {
     }
   }
   expect_done(fuzz);
+  // A journal that another database's killed transaction left would be rolled back into this database.
+  const std::string file = "c/campaign.sqlite-journal";
+  expect_done(
+      "cp c/campaign.sqlite kept && cp kept o && python3 -c '\nimport shutil, sqlite3\n"
+      "base = sqlite3.connect(\"o\", isolation_level=None)\n"
+      "for command in (\"pragma journal_mode = delete\", \"pragma cache_size = 1\", \"begin immediate\",\n"
+      "                \"update batch set counts = zeroblob(length(counts))\",\n"
+      "                \"create table big as with recursive n(i) as (select 1 union all select i + 1 from n limit "
+      "99)\"\n"
+      "                \" select randomblob(3000) from n\"): base.execute(command).fetchall()\n"
+      "shutil.copy(\"o-journal\", \"" +
+      file + "\")'");
+  expect_done("test -s " + file + " && cp " + file + " mine");
+  expect_error(fuzz, 1, {file, "move it away"});
+  expect_done("cmp kept c/campaign.sqlite && cmp mine " + file);
+  expect_done(fuzz + " --discard-damaged && cmp mine " + file + ".damaged && graze report c");
 }
 
 // A trigger in the database could delete rows although the run reports that it is done.

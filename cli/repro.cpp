@@ -48,11 +48,12 @@ bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std:
   const std::optional<analysis::Signature> recorded = text ? analysis::parse_signature(*text) : std::nullopt;
   const Bucket bucket = corpus::visit(entry, [&](const auto& pair) { return oracle::margin_bucket(pair, t.verdict); });
   const Nesting nesting = corpus::visit(entry, [&](const auto& pair) { return analysis::nesting_of(pair, t); });
-  Compared compared = Compared::nothing;
+  const bool is_failure = recorded && !recorded->wrong_lanes.empty();
+  Compared compared = is_failure ? Compared::nothing : Compared::changed;
   analysis::for_each_subject(run, [&](std::size_t first, std::size_t count) {
     const analysis::Signature now =
         analysis::signature(t, nesting, bucket, run.subspan(first, count), verdicts.subspan(first, count));
-    const bool is_recorded = recorded && recorded->subject == now.subject;
+    const bool is_recorded = is_failure && recorded->subject == now.subject;
     if (is_recorded) compared = compare(*recorded, now, run.subspan(first, count));
     if (now.wrong()) {
       std::cout << "  signature: " << analysis::key(now)

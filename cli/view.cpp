@@ -64,9 +64,9 @@ void add_verdicts(fuzz::SelectedLanes& own, Viewed& viewed) {
   }
 }
 
-void add_cases(const std::string& name, const fuzz::SelectedLanes& own, Viewed& viewed,
+void add_cases(const std::string& name, bool exact_input, const fuzz::SelectedLanes& own, Viewed& viewed,
                std::size_t most = reports::kMostViewedPairs) {
-  for (const corpus::Entry& entry : read_cases(name)) {
+  for (const corpus::Entry& entry : read_cases(name, exact_input)) {
     if (most-- == 0 || viewed.pairs.size() == reports::kMostViewedPairs) break;
     viewed.pairs.push_back(
         {shown_name(fs::path(name).filename().string(), entry), corpus::pair_of(entry), stored(own, entry)});
@@ -74,7 +74,7 @@ void add_cases(const std::string& name, const fuzz::SelectedLanes& own, Viewed& 
 }
 
 // Adds the simplest case of each signature of a campaign, or all cases of another folder.
-void add_folder(const fs::path& folder, const fuzz::SelectedLanes& own, Viewed& viewed) {
+void add_folder(const fs::path& folder, bool exact_input, const fuzz::SelectedLanes& own, Viewed& viewed) {
   const bool campaign = fs::is_directory(folder / "cases");
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(campaign ? folder / "cases" : folder)) {
@@ -82,7 +82,8 @@ void add_folder(const fs::path& folder, const fuzz::SelectedLanes& own, Viewed& 
   }
   std::sort(files.begin(), files.end());
   if (files.empty()) throw std::runtime_error("there is no *.pairs in " + folder.string() + ", nor in its cases/");
-  for (const fs::path& file : files) add_cases(file.string(), own, viewed, campaign ? 1 : reports::kMostViewedPairs);
+  for (const fs::path& file : files)
+    add_cases(file.string(), exact_input, own, viewed, campaign ? 1 : reports::kMostViewedPairs);
 }
 
 // Returns the exact verdict on a pair; declined unless the pair is finite.
@@ -172,11 +173,11 @@ Viewed viewed_of(const std::string& what, const std::string& mesh, bool exact_in
     add_query(what, mesh, exact_input, viewed);
   } else if (fs::is_directory(what, ignored)) {
     viewed.title = printable(what);
-    add_folder(what, own, viewed);
+    add_folder(what, exact_input, own, viewed);
   } else if (strata::is_mesh(what)) {
     add_mesh(what, exact_input, viewed);
   } else {
-    add_cases(what, own, viewed);
+    add_cases(what, exact_input, own, viewed);
     show_against_the_first(viewed);
   }
   return viewed;

@@ -39,7 +39,7 @@ constexpr const char* kShapes = R"({
   "extremes": [{"lane": "text", "extreme": "text", "says": "text", "points": [{"log2": "whole", "pairs": "count",
     "false_positive": "count", "false_negative": "count", "declined": "count"}]}],
   "sentences": ["text"]},
-"costs": {"machine": "text", "passes": "positive count", "rows": [{"lane": "count", "group": "count?",
+"costs": {"report?": "text", "machine": "text", "passes": "positive count", "rows": [{"lane": "count", "group": "count?",
   "pairs": "positive count", "low": "number", "middle": "number", "high": "number"}, "some"], "answer": ["text", "some"]},
 "run": {"seed": "count", "pairs": "count", "complete": "yes or no", "command": "text", "map_command": "text",
   "build": {"version": "text", "commit": "text", "compiler": "text", "cuda": "text?", "device": "text?"},

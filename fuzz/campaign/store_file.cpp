@@ -261,6 +261,8 @@ bool is_closed(const fs::path& database) {
 std::vector<fs::path> unusable_files_of(const fs::path& database) {
   constexpr std::string_view kJournal = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", kLog = "\x37\x7f\x06",
                              kIndex = "\x18\xe2\x2d";
+  constexpr std::uintmax_t kPage = 4096;
+  const std::uintmax_t size = fs::exists(database) ? fs::file_size(database) : 0;
   std::vector<fs::path> found;
   for (const auto& [suffix, begins] : {std::pair{"-wal", kLog}, {"-shm", kIndex}, {"-journal", kJournal}}) {
     const fs::path file = database.string() + suffix;
@@ -271,7 +273,9 @@ std::vector<fs::path> unusable_files_of(const fs::path& database) {
     begin.resize(begins.size());
     const bool is_empty = begin.find_first_not_of('\0') == begin.npos;  // SQLite clears the beginning of an old journal
     if (!S_ISREG(there.st_mode) || there.st_nlink != 1 || (begin != begins && !is_empty) ||
-        (begins == kLog && there.st_size > 0 && is_closed(database)))
+        (begins == kLog && there.st_size > 0 && is_closed(database)) ||
+        // Graze's own journals are older than the database's second page, because the rest is written through a log.
+        (begins == kJournal && !is_empty && size > kPage))
       found.push_back(file);
   }
   return found;

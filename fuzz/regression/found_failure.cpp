@@ -13,6 +13,7 @@
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
+#include "core/text.h"
 #include "core/whole.h"
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/recorded.h"
@@ -78,6 +79,11 @@ std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directo
     if (!summary.at("complete").get<bool>())
       throw UsageError(cannot("add", directory, "its campaign is not finished; finish it with `graze fuzz`"));
     const std::string seen = seen_by(summary.at("build"), "campaign", summary.at("spec").dump());
+    for (const std::string& glob : globs) {
+      const auto matches = [&](const Json& row) { return matches_any({glob}, row.at("key").get<std::string>()); };
+      if (std::none_of(summary.at("signatures").begin(), summary.at("signatures").end(), matches))
+        throw std::runtime_error(cannot("add", directory, fmt::format("no signature matches '{}'", printable(glob))));
+    }
     std::map<std::string, std::size_t> taken;           // number of signatures taken, by subject
     for (const Json& row : summary.at("signatures")) {  // most frequent first
       const std::string signature = row.at("key");

@@ -129,6 +129,15 @@ class Trial {
     return ask_.until(block_of(lane_), all.last);
   }
 
+  // A scale below the pair's own at which the code is right, if one is found among these.
+  std::optional<int> right_below(Scales scales) const {
+    if (scales.first > -1) return std::nullopt;
+    for (const auto& [scale, right] : ask_.tried(lane_, {scales.first, -1}, 12)) {
+      if (right) return scale;
+    }
+    return std::nullopt;
+  }
+
   // Adds the number in the source that decides the verdict, if it is known.
   Experiment named(Experiment found) const {
     if (found.cause != Cause::absolute_epsilon) return found;
@@ -143,12 +152,17 @@ class Trial {
     const auto number = number_that_decides();
     if (!number) return std::nullopt;
     const std::optional<LargerScales> larger = at_larger_scales(), any = larger ? larger : at_any_larger_scales();
-    const bool relative = !scale && any && any->wrong;
-    const bool settled =
-        number->on_images && (scale ? scale->cause == Cause::absolute_epsilon && turns_in_range_ : larger.has_value());
+    const bool wrong_above = !scale && any && any->wrong;
+    const Scales usual = scales_in_range(size_, lane_.scalar, kUsualFactors);
+    const std::optional<int> near = wrong_above && usual.has(0) ? right_below(usual) : std::nullopt,
+                             far = wrong_above && !near ? right_below(exact_scales(size_)) : std::nullopt;
+    const bool relative = wrong_above && !near;
+    const bool settled = number->on_images && !far &&
+                         (scale ? scale->cause == Cause::absolute_epsilon && turns_in_range_ : larger.has_value());
     std::string text = number->words;
     if (scale) text += "; " + scale->evidence;
-    if (relative) text += "; it is wrong at " + any->text();
+    if (wrong_above) text += "; it is wrong at " + any->text();
+    if (near || far) text += fmt::format(", but right at 2^{}", near ? *near : *far);
     return Experiment{relative ? Cause::relative_epsilon : Cause::absolute_epsilon, settled, std::move(text),
                       settled ? number->line : ""};
   }

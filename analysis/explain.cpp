@@ -217,7 +217,7 @@ std::string what_rounding_decides(const DoublePair& pair, const Pair& stored, Ve
   const float* c = coordinates(stored);
   if (const auto beyond = std::find_if(c, c + kCoordinates, [](float x) { return std::isinf(x); });
       beyond != c + kCoordinates)
-    return fmt::format("number {}, {}, is beyond its range", beyond - c + 1, coordinates(pair)[beyond - c]);
+    return fmt::format("number {}, {}, is beyond float32's range", beyond - c + 1, coordinates(pair)[beyond - c]);
   int rounded = 0;
   for (int i = 0; i < kCoordinates; ++i) {
     if (double{c[i]} == coordinates(pair)[i]) continue;

@@ -400,7 +400,7 @@ TEST(ExplainDoubles, TheNumberThatDecidesIsNamed) {
   for (const LaneExplanation& other : near.lanes) EXPECT_EQ(other.lane->scalar, Scalar::f32);
   pair.b[1].z = 1e300;
   const Explanation large = explain(pair, lanes_of_doubles());
-  EXPECT_EQ(lane_of(large, "guigue_devillers_2003/f32/cpu").experiment, "number 15, 1e+300, is beyond its range");
+  EXPECT_EQ(lane_of(large, "guigue_devillers_2003/f32/cpu").experiment, "number 15, 1e+300, is beyond float32's range");
 }
 
 }  // namespace

@@ -257,7 +257,7 @@ TEST_F(Doubles, NoReasonIsToldThatNobodySaw) {
   std::ofstream(shell.folder / "beyond.pairs") << "0 0 0  1 0 0  0 1 0   0 0 1  1 0 1  0 1e39 1\n";
   const std::string told =
       shell("graze explain beyond.pairs --lanes 'moller_1997/f32/cpu' | tr '\\n' ' ' | tr -s ' '").out;
-  EXPECT_TRUE(has(told, {"float32 cannot store the pair (number 17, 1e+39, is beyond its range)"}));
+  EXPECT_TRUE(has(told, {"float32 cannot store the pair (number 17, 1e+39, is beyond float32's range)"}));
   std::ofstream(shell.folder / "yes.c") << "int meet(const double* a, const double* b) { return 1; }\n";
   std::ofstream(shell.folder / "y.pairs") << "0 0 0 1 0 0 0 1 0  0 0 1 1 0 1 0 1 1 | coordinates=f64\n";
   const std::string own =

@@ -77,11 +77,14 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
                                         : "not shrunk: a lane times out, or its verdict changes";
   std::cout << fmt::format(
       "  signature: {}\n  magnitudes other than 0 and 1: {}, before {}\n"
-      "  cause: {}, as before\n"
+      "  cause: {}, {}\n"
       "{}"
       "  largest margin found: {:.7g} ulps\n",
       analysis::key(fuzz::signature_of(found.failure, found.result.pair)), nontrivial_magnitudes(found.result.pair),
       nontrivial_magnitudes(found.original), analysis::name(found.result.reason.cause),
+      found.result.reason.cause == found.result.first_cause
+          ? "as before"
+          : fmt::format("before only guessed as {}", analysis::name(found.result.first_cause)),
       reports::wrapped(minimal, screen.columns, 2, 4), found.result.worst_ulps);
   std::cout.flush();
 }

@@ -118,7 +118,7 @@ TEST_F(Minimize, CasesThatAreNotTheCampaignsAreRefusedAndCanBeBroughtBack) {
   const auto rows = shell.json("c/summary.json")["signatures"];
   const std::string first = "c/" + rows.front()["case"].get<std::string>(), key = rows.front()["key"],
                     last = "c/" + rows.back()["case"].get<std::string>();
-  for (const auto& [edit, found] : {std::pair("cp " + last + ' ' + first, std::string("head")),
+  for (const auto& [edit, found] : {std::pair("cp " + last + ' ' + first, std::string("second line")),
                                     {"sed -i '$d' " + first, "3 cases"},
                                     {"sed -i '$s/^[^ ]*/0x1.5p+3/' " + first, "pair"},
                                     {"sed -i '3s/^[^ ]*/0x1.5p+3/' " + first, "line 3"},

@@ -264,7 +264,7 @@ void expect_answers(const TriedCode& code, const fuzz::SelectedLanes& under_test
     const std::string pair = fuzz::pair_text(source.any_pair(0).in_float32()),
                       words = all_crashed ? last_words(code, pair, seconds) : "";
     hint = fmt::format("{}; to see {}: {}",
-                       words.empty() ? "a program must answer each line of 18 numbers with a line 1, 0 or ?, and a "
+                       words.empty() ? "a program must answer each line of 18 numbers with one line, 1, 0 or ?; a "
                                        "Python function is given as mine.py:meet (docs/your_own_code.md)"
                                      : "it says: " + words,
                        words.empty() ? "why" : "all of it", by_hand(code, pair));

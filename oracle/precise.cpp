@@ -58,8 +58,8 @@ Path outcomes_of(const Trace<Ball>& run) {
   return outcomes;
 }
 
-// Bits with which the bounds separate unequal polynomials in the coordinates, up to degree kDegree. Quotients and roots
-// of such polynomials may need more.
+// A precision in bits at which the error bounds separate any two unequal values of polynomials in the coordinates, up
+// to degree kDegree. Quotients and roots of such polynomials may need more.
 int separating_bits(const DoublePair& pair) {
   constexpr int kDegree = 16;
   int exponent = 0;

@@ -156,7 +156,7 @@ TEST(Comparison, TheHeadlineOnTheSamePairsIsAboutVerdicts) {
                     unknown = said(Json::array({verdicts_row("unknown", 0, 9)}));
   EXPECT_TRUE(names(bounded.substr(0, bounded.find('\n')), {"at least 2 verdicts", "at most 9"}));
   EXPECT_TRUE(
-      names(bounded.substr(bounded.rfind('\n') + 1), {"lane/0, uniform", "at least 2", "at most 9", "missing"}));
+      names(bounded.substr(bounded.rfind('\n') + 1), {"lane/0, uniform", "at least 2", "at most 9", "not known"}));
   EXPECT_TRUE(names(unknown.substr(0, unknown.find('\n')), {"No change", "not known", "at most 9"}));
   Json many = Json::array();
   for (std::size_t i = 0; i < kMostChanged + 7; ++i) many.push_back(counted);

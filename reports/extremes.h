@@ -12,7 +12,7 @@ namespace graze::reports {
 
 // Defines "as right" for readers of the sentences.
 inline constexpr const char* kAsRightMeans =
-    "As right: errors on at most twice the share of pairs, or on at most 0.1 %, with 95 % confidence.";
+    "As right: errs on at most twice as large a share of the pairs, or on at most 0.1 %, with 95 % confidence.";
 
 // "as right as at 1 (errs on 16.1 %) from 2^-40 to 2^44; errs more at 2^-44 and 2^44". A point stands for the
 // exponents [exponent, exponent + step), or for one exponent if the step is 0.   Requires: rising exponents.

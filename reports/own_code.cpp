@@ -247,12 +247,12 @@ std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const 
   }
   std::string text = "Epsilon: no failure that was examined shows an absolute epsilon";
   if (pairs > 0) {
-    text =
-        fmt::format("Epsilon: on {}, judged by one of each signature, an absolute epsilon or another fixed number {}",
-                    counted(pairs, "wrong pair"),
-                    settled == 0   ? "perhaps decides"
-                    : settled < of ? "decides, on some of them perhaps"
-                                   : "decides");
+    text = fmt::format(
+        "Epsilon: on {}, judging by one pair of each signature, an absolute epsilon or another fixed number {}",
+        counted(pairs, "wrong pair"),
+        settled == 0   ? "perhaps decides"
+        : settled < of ? "decides, on some of them perhaps"
+                       : "decides");
   }
   if (!in_source.empty()) text += fmt::format(" ({} your {})", pairs > 0 ? "perhaps" : "such as", in_source);
   // With triangles of other sizes, the code fails at other distances, so no margin is named.

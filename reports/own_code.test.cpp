@@ -164,7 +164,7 @@ TEST(OwnCode, AnEpsilonIsNamedOnlyIfAFailureShowsIt) {
   const Json kinds = {kind_of("other", "absolute epsilon", "general", 100), kind};
   const std::string some = epsilon_words(counts, lane, kinds, "1e-6f at mine.cpp:9");
   EXPECT_TRUE(
-      names(some, {"7 wrong pairs, judged by one of each signature, an absolute epsilon or another fixed number",
+      names(some, {"7 wrong pairs, judging by one pair of each signature, an absolute epsilon or another fixed number",
                    "your 1e-6f at mine.cpp:9", "relative"}))
       << some;
   EXPECT_EQ(some.find("ulps apart"), some.npos) << "of other sizes it fails at other distances";
@@ -173,8 +173,8 @@ TEST(OwnCode, AnEpsilonIsNamedOnlyIfAFailureShowsIt) {
   const std::string for_some = epsilon_words(counts, lane, partly);
   EXPECT_TRUE(names(for_some, {"7 wrong pairs", "decides, on some of them perhaps", "relative"})) << for_some;
   const std::string open = epsilon_words(counts, lane, Json{made_open(kind)});
-  EXPECT_TRUE(
-      names(open, {"judged by one of each signature, an absolute epsilon or another fixed number perhaps decides"}))
+  EXPECT_TRUE(names(
+      open, {"judging by one pair of each signature, an absolute epsilon or another fixed number perhaps decides"}))
       << open;
   EXPECT_EQ(open.find("relative"), open.npos);
   Json of_another_build = kind;

@@ -234,11 +234,11 @@ std::string card(const Json& report, const Json& found) {
     if (i % 3 == 0) text += fmt::format("{}[{}]", i < 9 ? 'a' : 'b', i / 3 % 3);
     text += fmt::format(" {} ({}){}", coordinate("decimal"), coordinate("hex"), i % 3 == 2 ? "\n" : "");
   }
-  text += "</pre>\n" +
-          paragraph(fmt::format("{} pairs, judged by one of each signature; truth: {}, contact {}, margin {} ulps.",
-                                grouped(kind.at("pairs")), found.at("truth").at("verdict").get<std::string>(),
-                                found.at("truth").at("contact").get<std::string>(),
-                                found.at("truth").at("margin_ulps").dump()));
+  text +=
+      "</pre>\n" + paragraph(fmt::format(
+                       "{} pairs, judging by one pair of each signature; truth: {}, contact {}, margin {} ulps.",
+                       grouped(kind.at("pairs")), found.at("truth").at("verdict").get<std::string>(),
+                       found.at("truth").at("contact").get<std::string>(), found.at("truth").at("margin_ulps").dump()));
   std::string wrong;
   for (const Json& row : found.at("verdicts")) {
     if (row.at("wrong")) wrong += (wrong.empty() ? "" : ", ") + lane_of(report, row);

@@ -97,7 +97,7 @@ std::string plan_difference(const Json& then, const Json& now) {
       differ.push_back(fmt::format("{} (plan {} then, {} now)", scalar, old.at("plan").get<std::string>(),
                                    found.at("plan").get<std::string>()));
   }
-  return differ.empty() ? "" : fmt::format("it fuses other products of {}", fmt::join(differ, ", and of "));
+  return differ.empty() ? "" : fmt::format("it fuses different products in {}", fmt::join(differ, ", and in "));
 }
 
 }  // namespace graze::subjects

@@ -157,7 +157,7 @@ TEST_F(ContractionPlans, AreRecordedAndNamedWhenABuildIsRefused) {
   EXPECT_NE(refusal().find("0123456789abcdef then"), std::string::npos) << refusal();
   EXPECT_EQ(refusal().find("fuses"), std::string::npos) << refusal();
   toolchain["contraction"]["f32"] = {{"plan", "3f2a3f2a3f2a3f2a"}, {"operations", 2}};
-  EXPECT_TRUE(names(refusal(), {"mine", "fuses other products of f32", "3f2a3f2a3f2a3f2a then",
+  EXPECT_TRUE(names(refusal(), {"mine", "fuses different products in f32", "3f2a3f2a3f2a3f2a then",
                                 plan(fused, "f32")["plan"].get<std::string>() + " now"}));
 }
 

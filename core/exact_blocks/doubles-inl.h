@@ -6,7 +6,7 @@
 // such numbers has a relative error of at most 5 u^2, and a sum or difference is off by at most 3 u^2 times the
 // summands' magnitudes (Joldes, Muller and Popescu 2017). A determinant is therefore off by at most (2 * 5 + 3 * 3) u^2
 // plus terms of u^3, in all less than 32 u^2, times its products' magnitudes. `hi` has the number's sign and a relative
-// error of u, so that bound is doubled for `hi`. With floats nothing underflows; with doubles, the loss is within
+// error of at most u; the bound is doubled for `hi`. With floats nothing underflows; with doubles, the loss is within
 // kDeterminantUnderflow (core/exact/error_bound.h).   Requires: fused multiply-adds, no contraction by the compiler.
 struct DoubleDouble {
   static constexpr double kError = 6 * 64 * 0x1p-106;

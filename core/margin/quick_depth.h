@@ -15,7 +15,7 @@ namespace graze {
 inline namespace GRAZE_FP {
 namespace first_attempt {
 
-// The overlap of the triangles' projections on an axis, times the axis's length, and the axis's squared length.
+// Two numbers of an axis: the overlap of the projections times the axis's length, and the axis's squared length.
 template <class Real>
 struct Overlap {
   Real along, n2;

@@ -166,7 +166,7 @@ struct Walk {
       : failure(of),
         known(results),
         most(limit),
-        result{.pair = pair, .reason = {first.cause, in_range(of, pair)}, .worst = pair},
+        result{.pair = pair, .first_cause = first.cause, .reason = {first.cause, in_range(of, pair)}, .worst = pair},
         way{pair},
         open(of.first_wrong(pair).foreign && !first.settled) {
     result.worst_ulps = std::fabs(oracle::truth(pair).margin_ulps);

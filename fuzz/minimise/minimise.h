@@ -77,7 +77,8 @@ struct Minimised {
   bool one_minimal = false;      // no single move makes it simpler and keeps failure and reason; false: not proven
   std::size_t single_moves = 0;  // if one_minimal: how many moves from the pair were tried and failed
   std::size_t moved = 0;         // pairs that moves tried; each search for a cause adds kMovedPerCause
-  Reason reason;                 // the pair's reason, with the first pair's cause, or for foreign code its own
+  analysis::Cause first_cause;   // the first pair's cause
+  Reason reason;                 // the pair's own; the cause differs from first_cause only if that was a guess
   AnyPair worst;                 // the pair with the largest margin in ulps, of the first pair and all visited ones
   double worst_ulps = 0;         // that margin, of either sign; the worst pair may have another cause
 };

@@ -27,8 +27,12 @@ TEST(MinimiseForeignCode, FindsTheFirstCauseOnce) {
   EXPECT_TRUE(one.settled);
   EXPECT_EQ(code.asked, static_cast<std::size_t>(one.asked));
   EXPECT_GT(one.asked, 100);
-  const Minimised known{
-      .pair = pair, .one_minimal = true, .single_moves = 7, .reason = {one.cause, true}, .worst = pair};
+  const Minimised known{.pair = pair,
+                        .one_minimal = true,
+                        .single_moves = 7,
+                        .first_cause = one.cause,
+                        .reason = {one.cause, true},
+                        .worst = pair};
   code.asked = 0;
   const Minimised found = minimise(failure, pair, {&known, 1});
   EXPECT_EQ(found.single_moves, 7u);

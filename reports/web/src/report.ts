@@ -28,6 +28,7 @@ export interface Threshold {
 // low, middle and high are the quartiles of the passes. A null group means all strata. answer: the report's answer with
 // costs.
 export interface Costs {
+  report?: string; // the checksum of its report.json
   machine: string;
   passes: number;
   rows: { lane: number; group: number | null; pairs: number; low: number; middle: number; high: number }[];

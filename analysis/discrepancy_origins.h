@@ -19,8 +19,8 @@ struct FusedLine {
   std::vector<std::uint64_t> mask, mask_of_doubles;  // its sites in the kernel of each coordinate type
   std::uint64_t values = 0;                          // fusing it alone changes this many values
   std::uint64_t verdicts_alone = 0;                  // fusing it alone changes this many verdicts
-  std::uint64_t verdicts_fixed =
-      0;  // verdicts that all contractions together change, and that rounding only this line's products restores
+  // Verdicts that all contractions together change, and that rounding only this line's products restores.
+  std::uint64_t verdicts_fixed = 0;
   std::optional<AnyPair> simplest;  // the simplest pair in the two counts above
 };
 

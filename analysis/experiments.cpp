@@ -129,13 +129,15 @@ class Trial {
     return ask_.until(block_of(lane_), all.last);
   }
 
-  // A scale below the pair's own at which the code is right, if one is found among these.
-  std::optional<int> right_below(Scales scales) const {
-    if (scales.first > -1) return std::nullopt;
-    for (const auto& [scale, right] : ask_.tried(lane_, {scales.first, -1}, 12)) {
-      if (right) return scale;
+  // The exponent of a scale below the pair's own at which the code is right, one of these if possible; 0 if none is
+  // found.
+  int right_below(Scales usual) const {
+    for (const Scales scales : {usual, exact_scales(size_)}) {
+      for (const auto& [scale, right] : ask_.tried(lane_, {scales.first, -1}, 12)) {
+        if (right) return scale;
+      }
     }
-    return std::nullopt;
+    return 0;
   }
 
   // Adds the number in the source that decides the verdict, if it is known.
@@ -154,15 +156,14 @@ class Trial {
     const std::optional<LargerScales> larger = at_larger_scales(), any = larger ? larger : at_any_larger_scales();
     const bool wrong_above = !scale && any && any->wrong;
     const Scales usual = scales_in_range(size_, lane_.scalar, kUsualFactors);
-    const std::optional<int> near = wrong_above && usual.has(0) ? right_below(usual) : std::nullopt,
-                             far = wrong_above && !near ? right_below(exact_scales(size_)) : std::nullopt;
-    const bool relative = wrong_above && !near;
-    const bool settled = number->on_images && !far &&
+    const int below = wrong_above ? right_below(usual) : 0;
+    const bool in_range = below < 0 && usual.has(0) && usual.has(below), relative = wrong_above && !in_range;
+    const bool settled = number->on_images && (below == 0 || in_range) &&
                          (scale ? scale->cause == Cause::absolute_epsilon && turns_in_range_ : larger.has_value());
     std::string text = number->words;
     if (scale) text += "; " + scale->evidence;
     if (wrong_above) text += "; it is wrong at " + any->text();
-    if (near || far) text += fmt::format(", but right at 2^{}", near ? *near : *far);
+    if (below < 0) text += fmt::format(", but right at 2^{}", below);
     return Experiment{relative ? Cause::relative_epsilon : Cause::absolute_epsilon, settled, std::move(text),
                       settled ? number->line : ""};
   }

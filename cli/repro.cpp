@@ -83,12 +83,10 @@ bool compare_truth(const corpus::Entry& entry, const oracle::Truth& t) {
 // verdict. Returns whether it differs.
 bool compare_verdict(const corpus::Entry& entry, std::span<const Lane* const> run, std::span<const Verdict> verdicts) {
   const std::string lane = corpus::text_of(entry, "lanes"), recorded = corpus::text_of(entry, "says");
-  for (std::size_t l = 0; l < run.size(); ++l) {
-    if (recorded.empty() || run[l]->id != lane || name(verdicts[l]) == recorded) continue;
-    fmt::print("  CHANGED, recorded: {} {}\n", lane, printable(recorded));
-    return true;
-  }
-  return false;
+  const auto found = std::find_if(run.begin(), run.end(), [&](const Lane* each) { return each->id == lane; });
+  if (recorded.empty() || found == run.end() || name(verdicts[found - run.begin()]) == recorded) return false;
+  fmt::print("  CHANGED, recorded: {} {}\n", lane, printable(recorded));
+  return true;
 }
 
 int repro(const std::string& name, const LaneOptions& lanes, const std::string& emitted) {

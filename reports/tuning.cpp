@@ -111,9 +111,7 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
     case TuneResult::not_useful:
       return fmt::format(
           "No {6} that was tried is good enough here. Among those that keep {0} at or under {1}, the one with the "
-          "fewest "
-          "{2} is "
-          "{3}; {4}. The rate of {2} may be at most {5} (--max-other). The exact lane has no errors.",
+          "fewest {2} is {3}; {4}. The rate of {2} may be at most {5} (--max-other). The exact lane has no errors.",
           words(q.forbid), q.max_rate, other_words(q.forbid), of, trust, q.max_other, setting(q));
     case TuneResult::not_satisfiable:
       break;
@@ -185,14 +183,13 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
     if (const std::string text = zero_words(question, tuned); !text.empty()) result.push_back(text);
   }
   const auto changes_nothing = [](const PolicyErrors& point) { return point.changes_nothing(); };
+  const std::string pairs =
+      fmt::format("changes any verdict on the {} of the choice.", counted(tuned.zero.pairs, "pair"));
   if (question.source && std::all_of(tuned.curves[0].points.begin(), tuned.curves[0].points.end(), changes_nothing))
-    result.push_back(
-        fmt::format("Dead knob: no value of {} that was tried, from 0 up, changes any verdict on the {} of the choice.",
-                    printable(question.source->epsilon.name), counted(tuned.zero.pairs, "pair")));
+    result.push_back(fmt::format("Dead knob: no value of {} that was tried, from 0 up, {}",
+                                 printable(question.source->epsilon.name), pairs));
   for (const std::string& site : tuned.dead)
-    result.push_back(
-        fmt::format("Dead knob: at {} no tolerance that was tried changes any verdict on the {} of the choice.", site,
-                    counted(tuned.zero.pairs, "pair")));
+    result.push_back(fmt::format("Dead knob: at {} no tolerance that was tried {}", site, pairs));
   const analysis::ScaleBreak& scale = tuned.scale;
   for (const auto& [k, at] : {std::pair{scale.up, scale.at_up}, {scale.down, scale.at_down}}) {
     if (k != 0)

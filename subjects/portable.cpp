@@ -44,8 +44,8 @@ std::vector<PathFlag> parse_flags(const std::vector<std::string>& words) {
 }
 
 // Adds the file, and all files that it includes from its own folder or from these folders.
-void add_includes(const fs::path& file, const std::vector<fs::path>& folders, std::set<fs::path>& files) {
-  if (!files.insert(file).second) return;
+void add_includes(const fs::path& file, const std::vector<fs::path>& folders, SourceFiles& all) {
+  if (!all.files.insert(file).second) return;
   static const std::regex include(R"re(^\s*#\s*(?:include|include_next|import)\s*([<"])([^>"]+)[>"])re");
   std::istringstream lines(code_in(file));
   std::smatch found;
@@ -53,12 +53,12 @@ void add_includes(const fs::path& file, const std::vector<fs::path>& folders, st
     if (line.size() > 4096 || !std::regex_search(line, found, include)) continue;
     std::vector<fs::path> within = folders;
     if (found[1] == "\"") within.insert(within.begin(), file.parent_path());
-    for (const fs::path& folder : within) {
-      const fs::path included = normal(folder / found[2].str());
-      if (!is_file(included)) continue;
-      add_includes(included, folders, files);
-      break;
-    }
+    const auto folder = std::find_if(within.begin(), within.end(),
+                                     [&](const fs::path& each) { return is_file(normal(each / found[2].str())); });
+    if (folder != within.end())
+      add_includes(normal(*folder / found[2].str()), folders, all);
+    else if (found[1] == "\"")
+      all.whole = false;
   }
 }
 
@@ -72,17 +72,8 @@ fs::path common_folder(const std::set<fs::path>& files) {
 }
 
 Portable of_source(const Opened& subject, const std::string& folder) {
-  std::vector<PathFlag> flags = parse_flags(subject.wanted.flags);
-  std::vector<fs::path> folders;
-  std::set<fs::path> files;
-  for (const PathFlag& flag : flags) {
-    if (!flag.name.empty() && flag.name != "-include") folders.push_back(normal(flag.value));
-  }
-  add_includes(normal(subject.file), folders, files);
-  for (const PathFlag& flag : flags) {
-    const bool is_input = flag.name == "-include" || (flag.name.empty() && !flag.value.starts_with('-'));
-    if (is_input && is_file(flag.value)) add_includes(normal(flag.value), folders, files);
-  }
+  const std::vector<PathFlag> flags = parse_flags(subject.wanted.flags);
+  const std::set<fs::path> files = source_files(subject).files;
   const auto names_files = [&](const PathFlag& flag) {
     return std::any_of(files.begin(), files.end(), [&](const fs::path& file) {
       return file == normal(flag.value) || (!flag.name.empty() && is_within(file, normal(flag.value)));
@@ -143,6 +134,21 @@ Portable of_command(const Opened& subject, const std::string& folder) {
 }
 
 }  // namespace
+
+SourceFiles source_files(const Opened& subject) {
+  const std::vector<PathFlag> flags = parse_flags(subject.wanted.flags);
+  std::vector<fs::path> folders;
+  for (const PathFlag& flag : flags) {
+    if (!flag.name.empty() && flag.name != "-include") folders.push_back(normal(flag.value));
+  }
+  SourceFiles all;
+  add_includes(normal(subject.file), folders, all);
+  for (const PathFlag& flag : flags) {
+    const bool is_input = flag.name == "-include" || (flag.name.empty() && !flag.value.starts_with('-'));
+    if (is_input && is_file(flag.value)) add_includes(normal(flag.value), folders, all);
+  }
+  return all;
+}
 
 Portable portable(const Opened& subject) {
   const std::string folder = "subjects/" + subject.wanted.name;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,14 @@
 #include "subjects/subjects.h"
 
 namespace graze::subjects {
+
+// The files of a subject that is a source: its own, those in its flags, and all that they include from their own
+// folders and from the folders in the flags.   Throws: std::runtime_error if a file cannot be read.
+struct SourceFiles {
+  std::set<std::filesystem::path> files;
+  bool whole = true;  // false: a file that is included in quotes is in none of these folders
+};
+SourceFiles source_files(const Opened& subject);
 
 // All names are relative to the folder that gets the files.
 struct Portable {
@@ -19,8 +28,8 @@ struct Portable {
   std::vector<std::string> missing;  // one sentence for each further thing that the subject needs
 };
 
-// A source needs its own file, and the files that it includes from its own folder and the folders in its flags. A
-// library is a single file. A command needs the files that it names, except the system's programs.
+// A source needs its source_files. A library is a single file. A command needs the files that it names, except the
+// system's programs.
 Portable portable(const Opened& subject);
 
 }  // namespace graze::subjects

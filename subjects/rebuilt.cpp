@@ -9,7 +9,6 @@
 #include <mutex>
 #include <optional>
 #include <regex>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -19,6 +18,7 @@
 #include "core/stop.h"
 #include "core/text.h"
 #include "subjects/cuda_code.h"
+#include "subjects/portable.h"
 #include "subjects/source_build.h"
 #include "subjects/subjects.h"
 
@@ -102,27 +102,6 @@ std::string source_as_built(const Lane& lane) {
   }
 }
 
-// Whether a source text, or a file that it includes in quotes, uses something that depends on the build. True also if
-// an included file is not in its folder or is too large, unless the source is Graze's own.   read: the files that were
-// searched already.
-bool names_build(const std::string& text, const fs::path& folder, bool own, std::set<fs::path>& read) {
-  static const std::regex names(
-      "__(FMA|AVX|SSE|FAST_MATH|FINITE_MATH|OPTIMIZE|ARM_FEATURE|FLT_EVAL)|FLT_EVAL_METHOD|FP_FAST|"
-      "\\b(sizeof|is_same|_Generic|typeid|numeric_limits)");
-  static const std::regex include("#[ \t]*include[ \t]*\"([^\"\n]+)\"");
-  if (std::regex_search(text, names)) return true;
-  for (auto it = std::sregex_iterator(text.begin(), text.end(), include); it != std::sregex_iterator(); ++it) {
-    const fs::path file = (folder / it->str(1)).lexically_normal();
-    if (!read.insert(file).second) continue;
-    try {
-      if (names_build(code_in(file), file.parent_path(), own, read)) return true;
-    } catch (const std::runtime_error&) {  // the file is elsewhere or too large
-      if (!own) return true;
-    }
-  }
-  return false;
-}
-
 // The builds that changed() has made, by lane and change.
 struct Builds {
   std::mutex mutex;
@@ -192,11 +171,19 @@ std::vector<FusedLine> fused_lines_of(const Lane& lane) {
 }
 
 bool selects_by_build(const Lane& lane) {
-  const std::string text = source_as_built(lane);
-  if (text.empty()) return false;
+  if (!has_source_as_built(lane)) return false;
+  static const std::regex names(
+      "__(FMA|AVX|SSE|FAST_MATH|FINITE_MATH|OPTIMIZE|ARM_FEATURE|FLT_EVAL)|FLT_EVAL_METHOD|FP_FAST|"
+      "\\b(sizeof|is_same|_Generic|typeid|numeric_limits)");
   const Opened& subject = opened_of(lane);
-  std::set<fs::path> read;
-  return names_build(text, subject.file.parent_path(), subject.kind == "published", read);
+  try {
+    const SourceFiles all = source_files(subject);
+    return (!all.whole && subject.kind != "published") ||  // Graze's own sources include from its root
+           std::any_of(all.files.begin(), all.files.end(),
+                       [](const fs::path& file) { return std::regex_search(code_in(file), names); });
+  } catch (const std::runtime_error&) {  // a file is too large
+    return true;
+  }
 }
 
 bool has_source_as_built(const Lane& lane) { return !source_as_built(lane).empty(); }

@@ -53,9 +53,9 @@ struct Change {
 // is no source, or if the source has changed since it was built.   Throws: Stopped.
 std::vector<FusedLine> fused_lines_of(const Lane& lane);
 
-// Whether the lane's source, or a file that it includes in quotes, uses something that depends on the build, such as
-// __FMA__ or sizeof. If so, a build with other flags or types may contain different code, whose verdicts show nothing
-// about the lane's code.
+// Whether one of the source_files of the lane's subject uses something that depends on the build, such as __FMA__ or
+// sizeof; also true if some of these files are not found or are too large. If so, a build with other flags or types may
+// contain different code, whose verdicts show nothing about the lane's code.
 bool selects_by_build(const Lane& lane);
 
 // Whether the lane is built from a C or C++ source whose file exists and is unchanged.

@@ -2,9 +2,9 @@
 #include "cuda/twin/twin_library.h"
 
 #include <dlfcn.h>
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -30,8 +30,9 @@ void decide_part(void* block, Scalar scalar, std::span<const Pair> pairs, signed
 
 template <class AnyPair>
 void decide_on_all_cores(void* block, Scalar scalar, std::span<const AnyPair> pairs, std::int8_t* answers) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pairs.size(), kPart), [&](const auto& part) {
-    decide_part(block, scalar, pairs.subspan(part.begin(), part.size()), answers + part.begin());
+  tbb::parallel_for(std::size_t{0}, (pairs.size() + kPart - 1) / kPart, [&](std::size_t part) {
+    const std::size_t first = part * kPart;
+    decide_part(block, scalar, pairs.subspan(first, std::min(kPart, pairs.size() - first)), answers + first);
   });
 }
 

@@ -36,4 +36,11 @@ void parallel_for(Index first, Index last, const Body& body) {
   if (failed) std::rethrow_exception(failed);
 }
 
+// Each call is a task of its own already.
+struct simple_partitioner {};
+template <class Index, class Body>
+void parallel_for(Index first, Index last, const Body& body, simple_partitioner) {
+  parallel_for(first, last, body);
+}
+
 }  // namespace tbb

@@ -174,8 +174,8 @@ std::string reason(const LaneExplanation& lane) {
   }
 }
 
+// Requires: the cause is no logic.
 std::string remedy(const LaneExplanation& lane) {
-  if (lane.cause == Cause::logic) return "more precision would not help";
   if (lane.cause == Cause::contraction) return "without contraction it is right";
   if (lane.cause == Cause::fast_math) return "with every operation rounded as written it is right";
   const std::string bits = lane.bits_needed == 0
@@ -309,8 +309,9 @@ std::string sentence(const Explanation& explanation, const AlgorithmInfo* subjec
   const Lane& lane = *first->lane;
   const bool stored = decides_stored(lane, explanation.pair) && first->cause != Cause::stored;
   const std::string also = others.empty() ? "" : "; also wrong: " + others,
-                    why = first->by_experiment() ? reason_by_experiment(*first)
-                                                 : reason(*first) + doubt(*first) + "; " + remedy(*first);
+                    why = first->by_experiment()         ? reason_by_experiment(*first)
+                          : first->cause == Cause::logic ? reason(*first) + doubt(*first)
+                                                         : reason(*first) + doubt(*first) + "; " + remedy(*first);
   return fmt::format("{}/{} ({}) says {}, but {}: {}{}{}.", lane.info->id, name(lane.scalar), same,
                      name(first->verdict), phrase(explanation.pair, explanation.truth),
                      stored ? "on the pair as float32 stores it, " : "", why, also);

@@ -206,28 +206,22 @@ void add_bench(CLI::App& app, int& status) {
       "bench", "Time one triangle against arrays of triangles, on all cores and GPUs of this machine");
   command->footer("Example: graze bench --triangles 1e4,1e5");
   auto options = std::make_shared<Options>();
-  command->add_option("--triangles", options->sizes, "Sizes of the arrays of random triangles")
+  add_valued(*command, "--triangles", options->sizes, "N,…", "Sizes of the arrays of random triangles")
       ->delimiter(',')
       ->transform(whole_number(1, std::uint64_t{1} << 34))
-      ->default_str("1e4,1e5,1e6,5e6,1e7,2e7")
-      ->option_text("N,…");
-  command
-      ->add_option("--mesh", options->mesh,
-                   "Mesh to test as well: all its triangles against the one in the middle of the file")
-      ->option_text("FILE");
-  command
-      ->add_option("--between", options->between,
-                   "Two meshes to test against each other, with the exact test and with CGAL's do_intersect; nothing "
-                   "else is timed unless --triangles is given")
-      ->expected(2)
-      ->option_text("MESH MESH");
+      ->default_str("1e4,1e5,1e6,5e6,1e7,2e7");
+  add_valued(*command, "--mesh", options->mesh, "FILE",
+             "Mesh to test as well: all its triangles against the one in the middle of the file");
+  add_valued(*command, "--between", options->between, "MESH MESH",
+             "Two meshes to test against each other, with the exact test and with CGAL's do_intersect; nothing "
+             "else is timed unless --triangles is given")
+      ->expected(2);
   add_globs(*command, "--lanes", options->lanes.globs,
             "Patterns of the lanes to time besides the exact one: host lanes on cores, CUDA lanes on GPUs, or as "
             "twins if there is no GPU")
       ->default_str("six common lanes, and those of --subject");
   add_subject_options(*command, options->lanes);
-  command->add_option("--plot", options->plot, "Picture to write: verdicts per second against array size")
-      ->option_text("FILE.svg");
+  add_valued(*command, "--plot", options->plot, "FILE.svg", "Picture to write: verdicts per second against array size");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->callback([options, &status, command] {
     if (!options->between.empty() && command->count("--triangles") == 0) {

@@ -175,14 +175,20 @@ std::string left_out_text(const std::vector<strata::LeftOut>& left_out);
 // Accepts only whole numbers in [least, most], including forms such as 1e6, 10M or 1_000_000. For CLI11's transform().
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 
+// Adds an option whose help shows `placeholder` for its value.
+template <class Value>
+CLI::Option* add_valued(CLI::App& command, const char* name, Value& value, const char* placeholder,
+                        const std::string& description) {
+  return command.add_option(name, value, description)->option_text(placeholder);
+}
+
 // Adds an option for a whole number in [least, most]; its help shows the default.
 template <class Whole>
 CLI::Option* add_count(CLI::App& command, const char* name, Whole& count, std::uint64_t least, std::uint64_t most,
                        const char* description) {
-  return command.add_option(name, count, description)
+  return add_valued(command, name, count, "N", description)
       ->transform(whole_number(least, most))
-      ->capture_default_str()
-      ->option_text("N");
+      ->capture_default_str();
 }
 
 // Adds --shard K/N.

@@ -229,7 +229,7 @@ CLI::App* add_verb(CLI::App& corpus, const char* name, const char* what, const c
                    const std::shared_ptr<CorpusOptions>& options) {
   CLI::App* command = corpus.add_subcommand(name, what)->group("Verbs");
   command->footer(example);
-  command->add_option("--corpus", options->folder, "Folder of the corpus")->capture_default_str()->option_text("DIR");
+  add_valued(*command, "--corpus", options->folder, "DIR", "Folder of the corpus")->capture_default_str();
   return command;
 }
 
@@ -250,9 +250,8 @@ void add_corpus(CLI::App& app, int& status) {
           "Campaign directories (the first case of each signature is added), files of cases, or STRATUM:SEED:INDEX")
       ->required();
   add_globs(*command, "--signatures", options->signatures, "Patterns of the campaign's signatures to add");
-  command->add_option("--top", options->most, "Number of signatures to add per algorithm, most frequent first")
+  add_valued(*command, "--top", options->most, "N", "Number of signatures to add per algorithm, most frequent first")
       ->transform(whole_number(1, 1'000'000'000))
-      ->option_text("N")
       ->default_str("all");
   add_exact_input(*command, options->exact_input);
   add_lane_options(*command, options->lanes);

@@ -309,45 +309,34 @@ void add_discrepancy(CLI::App& app, int& status) {
       "discrepancy", "Measure how much two lanes' values differ, and how often that changes a comparison's outcome");
   command->footer("Example: graze discrepancy moller_1997/f32/cpu moller_1997/f32/cuda-fma");
   const auto options = std::make_shared<DiscrepancyOptions>();
-  command
-      ->add_option(
-          "lanes", options->lanes,
-          "Lanes to compare, two at a time. For your own code, only verdicts are compared. Between cuda-nofma and "
-          "cuda-fma of a CUDA source, the operands of comparisons are compared too (default: the first lane of "
-          "--subject with each of its other lanes; without --subject, cpu with cuda-fma and with cuda-nofma, for all "
-          "algorithms)")
-      ->option_text("LANE LANE");
-  command
-      ->add_option("--compare", options->compare,
-                   "Compare two results of this verb on the same pairs, such as those of two drivers or GPUs")
+  add_valued(
+      *command, "lanes", options->lanes, "LANE LANE",
+      "Lanes to compare, two at a time. For your own code, only verdicts are compared. Between cuda-nofma and "
+      "cuda-fma of a CUDA source, the operands of comparisons are compared too (default: the first lane of "
+      "--subject with each of its other lanes; without --subject, cpu with cuda-fma and with cuda-nofma, for all "
+      "algorithms)");
+  add_valued(*command, "--compare", options->compare, "DIR DIR",
+             "Compare two results of this verb on the same pairs, such as those of two drivers or GPUs")
       ->expected(2)
-      ->excludes("lanes")
-      ->option_text("DIR DIR");
+      ->excludes("lanes");
   add_subject_options(*command, options->subjects);
   add_resubject_option(*command, options->subjects);
   add_draw_options(*command, *options);
-  command
-      ->add_option("--campaign", options->campaign,
-                   "Compare on the first pairs of this campaign; without --out, its report shows the results")
+  add_valued(*command, "--campaign", options->campaign, "DIR",
+             "Compare on the first pairs of this campaign; without --out, its report shows the results")
       ->excludes("--strata")
       ->excludes("--coordinates")
-      ->excludes("--scene")
-      ->option_text("DIR");
+      ->excludes("--scene");
   add_count(*command, "--pairs", options->pairs, 1, kMostWhole,
             "Number of pairs in total, shared evenly by the strata");
   add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of the pairs");
   add_threads_option(*command, options->threads);
-  command
-      ->add_option(
-          "--executor", options->executor,
-          "Where values are compared. auto: on a device if there is one, else on the host with twins; the counts do "
-          "not depend on this choice")
-      ->transform(one_of({"auto", "device", "twin"}, Chosen::place))
-      ->option_text("auto|device|twin");
-  command
-      ->add_option("--out", options->out,
-                   "Folder for discrepancy.html, .json and .csv (default: the campaign's, else discrepancy)")
-      ->option_text("DIR");
+  add_valued(*command, "--executor", options->executor, "auto|device|twin",
+             "Where values are compared. auto: on a device if there is one, else on the host with twins; the counts do "
+             "not depend on this choice")
+      ->transform(one_of({"auto", "device", "twin"}, Chosen::place));
+  add_valued(*command, "--out", options->out, "DIR",
+             "Folder for discrepancy.html, .json and .csv (default: the campaign's, else discrepancy)");
   for (const char* silenced : {"--strata", "--coordinates", "--scene", "--campaign", "--pairs", "--seed", "--threads",
                                "--executor", "--out", "--subject"})
     command->get_option("--compare")->excludes(silenced);

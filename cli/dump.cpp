@@ -190,18 +190,14 @@ void add_dump(CLI::App& app, int&) {
       ->add_option("SOURCE", options->name, "Stratum, STRATUM:SEED (the seed is 1 by default), or campaign directory")
       ->required();
   static_assert(static_cast<int>(Format::pairs) == 0 && static_cast<int>(Format::csv) == 1);
-  command
-      ->add_option("--format", options->format,
-                   "Format of the output. csv: a table with a header line; its decimals give the exact coordinates "
-                   "when they are read as doubles. pairs: the format that `graze check` reads")
+  add_valued(*command, "--format", options->format, "pairs|csv",
+             "Format of the output. csv: a table with a header line; its decimals give the exact coordinates "
+             "when they are read as doubles. pairs: the format that `graze check` reads")
       ->transform(one_of({"pairs", "csv"}, Chosen::place))
-      ->option_text("pairs|csv")
       ->default_str("csv");
-  command
-      ->add_option("--pairs", options->pairs,
-                   "Number of pairs in total; by default 1000 for a stratum, all for a campaign")
-      ->transform(whole_number(1, kMostWhole))
-      ->option_text("N");
+  add_valued(*command, "--pairs", options->pairs, "N",
+             "Number of pairs in total; by default 1000 for a stratum, all for a campaign")
+      ->transform(whole_number(1, kMostWhole));
   add_lane_options(*command, options->lanes);
   command->get_option("--lanes")
       ->description("Patterns of the lanes whose verdicts are added")

@@ -313,61 +313,47 @@ void add_fuzz(CLI::App& app, int& status) {
             "Number of pairs in total, shared evenly by the strata; a mesh adds all its pairs");
   add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of all strata");
   add_threads_option(*command, options->threads);
-  command
-      ->add_option("--out", options->out,
-                   "Campaign directory; an unfinished campaign in it is resumed; the last --out counts")
+  add_valued(*command, "--out", options->out, "DIR",
+             "Campaign directory; an unfinished campaign in it is resumed; the last --out counts")
       ->take_last()
-      ->capture_default_str()
-      ->option_text("DIR");
+      ->capture_default_str();
   add_shard_option(
       *command, options->shard,
       "Part of the campaign to run: the K-th of N, in its own directory. `graze merge` joins the parts; the "
       "result is the same as without shards");
-  command
-      ->add_option("--scratch", options->scratch,
-                   "Folder on a local disk for a shard's database while it runs; it is then copied to --out")
-      ->option_text("DIR");
+  add_valued(*command, "--scratch", options->scratch, "DIR",
+             "Folder on a local disk for a shard's database while it runs; it is then copied to --out");
   add_draw_options(*command, *options);
   add_lane_options(*command, options->lanes);
-  command
-      ->add_option(
-          "--mesh", options->mesh,
-          "Mesh, or two meshes, whose triangles are paired where their boxes overlap. Strata are drawn as well only if "
-          "--strata is given")
+  add_valued(
+      *command, "--mesh", options->mesh, "FILE [FILE2]",
+      "Mesh, or two meshes, whose triangles are paired where their boxes overlap. Strata are drawn as well only if "
+      "--strata is given")
       ->expected(1, 2)
-      ->excludes("--scene")
-      ->option_text("FILE [FILE2]");
+      ->excludes("--scene");
   add_exact_input(*command, options->exact_input);
   static_assert(static_cast<int>(fuzz::EngineChoice::automatic) == 0 &&
                 static_cast<int>(fuzz::EngineChoice::cpu) == 1 && static_cast<int>(fuzz::EngineChoice::gpu) == 2);
-  command
-      ->add_option(
-          "--engine", options->engine,
-          "Engine that judges the pairs. cpu: see --judge; gpu: runs every step on the device; only for CUDA lanes. "
-          "auto: gpu where possible. The engine does not affect results")
+  add_valued(*command, "--engine", options->engine, "auto|cpu|gpu",
+             "Engine that judges the pairs. cpu: see --judge; gpu: runs every step on the device; only for CUDA lanes. "
+             "auto: gpu where possible. The engine does not affect results")
       ->transform(one_of({"auto", "cpu", "gpu"}, Chosen::place))
-      ->option_text("auto|cpu|gpu")
       ->default_str("auto");
-  command
-      ->add_option(
-          "--judge", options->by_exact_lane,
-          "Ground truth of the CPU engine. oracle: CGAL decides every pair, GMP confirms every disagreement; exact: "
-          "the exact lane decides, CGAL and GMP confirm one pair in 1,000 and every kept case. "
-          "The choice does not affect results")
+  add_valued(*command, "--judge", options->by_exact_lane, "oracle|exact",
+             "Ground truth of the CPU engine. oracle: CGAL decides every pair, GMP confirms every disagreement; exact: "
+             "the exact lane decides, CGAL and GMP confirm one pair in 1,000 and every kept case. "
+             "The choice does not affect results")
       ->transform(one_of({"oracle", "exact"}, Chosen::place))
-      ->option_text("oracle|exact")
       ->default_str("oracle");
   command->add_flag("--discard-damaged", options->discard_damaged,
                     "Resume a damaged campaign; batches whose checksum fails are run again");
-  command
-      ->add_option(
-          "--fail-above", options->fail_above,
-          "Number of wrong pairs above which the exit status is 1. Pairs on which some build is wrong are counted for "
-          "each subject of --subject, or else for each algorithm. Standard error then shows the simplest minimised "
-          "case")
+  add_valued(
+      *command, "--fail-above", options->fail_above, "N",
+      "Number of wrong pairs above which the exit status is 1. Pairs on which some build is wrong are counted for "
+      "each subject of --subject, or else for each algorithm. Standard error then shows the simplest minimised "
+      "case")
       ->transform(whole_number(0, kMostWhole))
-      ->excludes("--shard")
-      ->option_text("N");
+      ->excludes("--shard");
   command->add_flag("--json", options->json, "Print the summary as JSON");
   add_junit(*command, options->junit, "one test for each lane and stratum");
   command->add_flag("--require-device", options->require_device, "Fail if there is no CUDA device");

@@ -135,18 +135,15 @@ void add_hunt(CLI::App& app, int& status) {
   command->footer("Example: graze hunt --runs 1000000 --seed 1 --lanes 'moller*' --out hunt");
   auto options = std::make_shared<HuntOptions>();
   add_count(*command, "--runs", options->pairs, 1, kMostWhole, "Number of pairs in total");
-  command
-      ->add_option("--minutes", options->minutes,
-                   "Time limit in minutes, after which the same command resumes the search; 0 means none")
+  add_valued(*command, "--minutes", options->minutes, "MINUTES",
+             "Time limit in minutes, after which the same command resumes the search; 0 means none")
       ->transform(whole_number(0, 1'000'000))
-      ->capture_default_str()
-      ->option_text("MINUTES");
+      ->capture_default_str();
   add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of the search");
   add_count(*command, "--threads", options->threads, 0, kMostThreads,
             "Number of simultaneous rounds, at most four, which does not affect results; 0 means one per core");
-  command->add_option("--out", options->out, "Directory of the search; an unfinished search in it is resumed")
-      ->capture_default_str()
-      ->option_text("DIR");
+  add_valued(*command, "--out", options->out, "DIR", "Directory of the search; an unfinished search in it is resumed")
+      ->capture_default_str();
   add_shard_option(
       *command, options->shard,
       "Part of the search to run: the K-th of N, with its share of the runs, in its own directory. `graze merge` "

@@ -75,9 +75,8 @@ void add_invariants(CLI::App& app, int& status) {
             "Number of pairs in total, shared evenly by the strata; each is decided in about 70 forms");
   add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of the pairs");
   add_threads_option(*command, options->threads);
-  command->add_option("--out", options->out, "Folder for invariants.json and the simplest cases")
-      ->capture_default_str()
-      ->option_text("DIR");
+  add_valued(*command, "--out", options->out, "DIR", "Folder for invariants.json and the simplest cases")
+      ->capture_default_str();
   run_drawing(*command, options, status, invariants);
 }
 

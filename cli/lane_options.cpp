@@ -26,30 +26,23 @@ std::vector<std::string> compiler_flags(const std::vector<std::string>& texts) {
 
 void add_subject_options(CLI::App& command, LaneOptions& options) {
   CLI::Option* subject =
-      command
-          .add_option(
-              "--subject", options.subjects,
-              "Your own code; the names of its lanes begin with NAME/. WHAT is cmd:COMMAND, or FILE[:FUNCTION] for a "
-              "shared object or a C, C++ or CUDA source; see docs/your_own_code.md. May be repeated")
-          ->allow_extra_args(false)
-          ->option_text("NAME=WHAT");
-  command
-      .add_option("--flags", options.flags,
-                  "Compiler flags for subjects given as source files, such as --flags='-O3 -Iinclude'")
+      add_valued(
+          command, "--subject", options.subjects, "NAME=WHAT",
+          "Your own code; the names of its lanes begin with NAME/. WHAT is cmd:COMMAND, or FILE[:FUNCTION] for a "
+          "shared object or a C, C++ or CUDA source; see docs/your_own_code.md. May be repeated")
+          ->allow_extra_args(false);
+  add_valued(command, "--flags", options.flags, "TEXT",
+             "Compiler flags for subjects given as source files, such as --flags='-O3 -Iinclude'")
       ->needs(subject)
-      ->allow_extra_args(false)
-      ->option_text("TEXT");
-  command
-      .add_option(
-          "--toolchains", options.toolchains,
-          "Toolchains that build additional lanes of the published algorithms and of subjects given as source files: "
-          "names such as arm64-gcc, all, or FILE.toml; see docs/toolchains.md")
-      ->option_text("NAME,...");
-  command.add_option("--subject-timeout", options.timeout, "Time limit per pair for a subject, in seconds")
+      ->allow_extra_args(false);
+  add_valued(
+      command, "--toolchains", options.toolchains, "NAME,...",
+      "Toolchains that build additional lanes of the published algorithms and of subjects given as source files: "
+      "names such as arm64-gcc, all, or FILE.toml; see docs/toolchains.md");
+  add_valued(command, "--subject-timeout", options.timeout, "SECONDS", "Time limit per pair for a subject, in seconds")
       ->needs(subject)
       ->check(number(0.001, 86400.0))
-      ->capture_default_str()
-      ->option_text("SECONDS");
+      ->capture_default_str();
 }
 
 void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors) {
@@ -61,12 +54,10 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
   }
   static_assert(static_cast<int>(fuzz::Executor::automatic) == 0 && static_cast<int>(fuzz::Executor::device) == 1 &&
                 static_cast<int>(fuzz::Executor::twin) == 2 && static_cast<int>(fuzz::Executor::both) == 3);
-  command
-      .add_option("--executor", options.executor,
-                  "Executor of the CUDA lanes. auto: the device if there is one, else the twins; both: device and "
-                  "twins, compared")
+  add_valued(command, "--executor", options.executor, "auto|device|twin|both",
+             "Executor of the CUDA lanes. auto: the device if there is one, else the twins; both: device and "
+             "twins, compared")
       ->transform(one_of({"auto", "device", "twin", "both"}, Chosen::place))
-      ->option_text("auto|device|twin|both")
       ->default_str("auto");
 }
 

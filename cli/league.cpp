@@ -168,24 +168,19 @@ void add_league(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("league", "Compare libraries and the published algorithms on the same pairs");
   command->footer("Example: graze league --subjects build-league/subjects.txt --pairs 1M");
   auto options = std::make_shared<LeagueOptions>();
-  command
-      ->add_option("--subjects", options->subjects,
-                   "File of libraries, one NAME=WHAT per line as for --subject; `scripts/league` writes one")
-      ->required()
-      ->option_text("FILE");
+  add_valued(*command, "--subjects", options->subjects, "FILE",
+             "File of libraries, one NAME=WHAT per line as for --subject; `scripts/league` writes one")
+      ->required();
   add_count(*command, "--pairs", options->pairs, 1, kMostWhole,
             "Number of pairs in total, shared evenly by the strata");
   add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of all strata");
-  command
-      ->add_option("--subject-timeout", options->timeout,
-                   "Time limit of a library for one pair, in seconds; a pair that exceeds it is tried once more")
+  add_valued(*command, "--subject-timeout", options->timeout, "SECONDS",
+             "Time limit of a library for one pair, in seconds; a pair that exceeds it is tried once more")
       ->check(number(0.001, 86400.0))
-      ->capture_default_str()
-      ->option_text("SECONDS");
+      ->capture_default_str();
   add_draw_options(*command, *options);
-  command->add_option("--out", options->out, "Directory for league.json, league.md and drawings")
-      ->capture_default_str()
-      ->option_text("DIR");
+  add_valued(*command, "--out", options->out, "DIR", "Directory for league.json, league.md and drawings")
+      ->capture_default_str();
   run_drawing(*command, options, status, league);
 }
 

@@ -150,18 +150,13 @@ void add_map(CLI::App& app, int&) {
       ->required();
   add_lane_options(*command, options->lanes, Executors::twins);
   add_resubject_option(*command, options->lanes);
-  command
-      ->add_option("--out", options->out,
-                   "Picture with a panel for the truth and one per lane, or a directory for one picture per panel")
-      ->option_text("FILE.png|DIR")
+  add_valued(*command, "--out", options->out, "FILE.png|DIR",
+             "Picture with a panel for the truth and one per lane, or a directory for one picture per panel")
       ->capture_default_str();
-  command
-      ->add_option(
-          "--x", options->x,
-          "Coordinate that grows to the right; by default, --x and --y are the coordinates along which verdicts "
-          "change most")
-      ->option_text("b[0].x");
-  command->add_option("--y", options->y, "Coordinate that grows upwards")->option_text("b[0].y");
+  add_valued(*command, "--x", options->x, "b[0].x",
+             "Coordinate that grows to the right; by default, --x and --y are the coordinates along which verdicts "
+             "change most");
+  add_valued(*command, "--y", options->y, "b[0].y", "Coordinate that grows upwards");
   command->callback([options] { draw_map(*options); });
 }
 

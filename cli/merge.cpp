@@ -43,9 +43,7 @@ void add_merge(CLI::App& app, int& status) {
   auto options = std::make_shared<MergeOptions>();
   command->add_option("DIR", options->parts, "Directories of shards, or of campaigns merged before, in any order")
       ->required();
-  command->add_option("--out", options->out, "Directory for the campaign, new or empty")
-      ->required()
-      ->option_text("DIR");
+  add_valued(*command, "--out", options->out, "DIR", "Directory for the campaign, new or empty")->required();
   command->add_flag("--partial", options->partial,
                     "Merge the existing shards into an unfinished campaign, which `graze fuzz` resumes");
   command->add_flag("--json", options->json, "Print the summary as JSON");

@@ -15,7 +15,6 @@
 #include <set>
 #include <sstream>
 
-#include "cli/case_maps.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
@@ -32,7 +31,9 @@
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimised_cases.h"
 #include "fuzz/own_files.h"
+#include "fuzz/sealed.h"
 #include "reports/terminal.h"
+#include "reports/ulp_map_picture.h"
 #include "subjects/subjects.h"
 
 namespace graze::cli {
@@ -172,6 +173,42 @@ Done minimize_file(const fuzz::SelectedLanes& under_test, const Json& spec, cons
           processor_seconds() - before};
 }
 
+// Returns the maps in the file, or null if they are missing or damaged; the caller then draws new maps.
+Json stored(const fs::path& file) {
+  try {
+    return fuzz::read_sealed(file, "");
+  } catch (const corpus::FormatError&) {
+    return nullptr;
+  }
+}
+
+// Whether the stored maps belong to this pair and these lanes.
+bool is_current(const Json& maps, const AnyPair& pair, const std::vector<const Lane*>& lanes) {
+  std::vector<std::string> ids;
+  for (const Lane* lane : lanes) ids.push_back(lane->id);
+  if (!reports::is_map_of(maps, pair, ids) || maps["panels"].size() != lanes.size() + 1) return false;
+  for (std::size_t l = 0; l < lanes.size(); ++l) {
+    if (maps["panels"][l + 1]["name"] != ids[l]) return false;
+  }
+  return true;
+}
+
+// Draws ulp maps of the file's first case, along analysis::liveliest_coordinates, for those lanes under test that
+// belong to the subject, and stores them beside the case as HASH.maps.json for the report. Does nothing if current maps
+// exist, unless `again` is true.   Returns: whether this call drew maps.
+bool map_case(const fuzz::SelectedLanes& under_test, const fs::path& case_file, const std::string& subject,
+              bool again) {
+  const fs::path file = fs::path(case_file).replace_extension(".maps.json");
+  const AnyPair pair = corpus::pair_of(corpus::read_pairs(case_file, PairTypes::both).at(0));
+  std::vector<const Lane*> lanes;
+  std::copy_if(under_test.lanes.begin(), under_test.lanes.end(), std::back_inserter(lanes),
+               [&](const Lane* lane) { return lane->info->id == subject; });
+  if (!again && is_current(stored(file), pair, lanes)) return false;
+  const analysis::UlpMap map = analysis::ulp_map(pair, lanes, analysis::liveliest_coordinates(pair, lanes));
+  fuzz::write_whole(file, fuzz::sealed(reports::to_json(map)).dump(1) + "\n");
+  return true;
+}
+
 void print_directory(const std::string& directory, const std::vector<Done>& all) {
   std::vector<int> magnitudes;
   for (const Done& done : all) {
@@ -306,8 +343,7 @@ void add_minimize(CLI::App& app, int& status) {
           "CASE", options->name,
           "Campaign directory, file of pairs, or STRATUM:SEED:INDEX; the results of a campaign go into its cases/")
       ->required();
-  command->add_option("--out", options->out, "File for the minimised pairs, each followed by its original")
-      ->option_text("FILE");
+  add_valued(*command, "--out", options->out, "FILE", "File for the minimised pairs, each followed by its original");
   add_exact_input(*command, options->exact_input);
   command->add_flag("--again", options->again, "Minimise every case again, even those that have a result");
   add_threads_option(*command, options->threads);

@@ -147,7 +147,7 @@ void add_pack(CLI::App& app, int&) {
   command->footer("Example: graze pack campaign\nOn another machine: graze repro campaign.sqlar");
   auto directory = std::make_shared<std::string>(), out = std::make_shared<std::string>();
   command->add_option("DIR", *directory, "Directory of a complete campaign")->required();
-  command->add_option("--out", *out, "File for the pack (default: DIR.sqlar)")->option_text("FILE");
+  add_valued(*command, "--out", *out, "FILE", "File for the pack (default: DIR.sqlar)");
   command->callback([directory, out] { pack(*directory, *out); });
 }
 

@@ -179,9 +179,7 @@ void add_pareto(CLI::App& app, int& status) {
                  "Measure the CUDA lanes on the first device, with pairs in its memory and with copies")
       ->excludes("--coordinates")
       ->excludes("--subject");
-  command->add_option("--out", options->out, "Folder for pareto.json and the pictures")
-      ->capture_default_str()
-      ->option_text("DIR");
+  add_valued(*command, "--out", options->out, "DIR", "Folder for pareto.json and the pictures")->capture_default_str();
   run_drawing(*command, options, status, pareto);
 }
 

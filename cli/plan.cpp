@@ -104,15 +104,12 @@ void add_plan(CLI::App& app, int& status) {
   add_lane_options(*command, options->lanes);
   CLI::Option* cores =
       add_count(*command, "--cores", options->cores, 1, 10'000'000, "Number of cores that run the campaign");
-  command
-      ->add_option("--gpus", options->gpus,
-                   "Number of GPUs that run the campaign; the rate is measured on one GPU, or given by --rate")
+  add_valued(*command, "--gpus", options->gpus, "N",
+             "Number of GPUs that run the campaign; the rate is measured on one GPU, or given by --rate")
       ->transform(whole_number(1, 10'000'000))
-      ->excludes(cores)
-      ->option_text("N");
-  command->add_option("--rate", options->rate, "Pairs per second of one core or GPU; measured by default")
-      ->check(number(1e-3, 1e15))
-      ->option_text("PAIRS");
+      ->excludes(cores);
+  add_valued(*command, "--rate", options->rate, "PAIRS", "Pairs per second of one core or GPU; measured by default")
+      ->check(number(1e-3, 1e15));
   command->add_flag("--json", options->json, "Print one JSON object");
   run_drawing(*command, options, status, plan);
 }

@@ -74,11 +74,8 @@ void add_prove_twin(CLI::App& app, int& status) {
   add_lane_options(*command, *lanes, Executors::twins);
   command->add_flag("--wrong-rule", options->wrong_rule,
                     "Use a wrong contraction rule on purpose; the comparison must then fail");
-  command
-      ->add_option(
-          "--out", *out,
-          "File for the record (default: proof.json; for a subject FILE.cu.proof.json, where graze looks for it)")
-      ->option_text("FILE");
+  add_valued(*command, "--out", *out, "FILE",
+             "File for the record (default: proof.json; for a subject FILE.cu.proof.json, where graze looks for it)");
   command->callback([options, lanes, coordinates, out, &status] {
     if (*coordinates == PairTypes::both) throw UsageError("--coordinates both: a record has one type; name f32 or f64");
     options->of_doubles = *coordinates == PairTypes::f64;

@@ -366,41 +366,35 @@ void add_query(CLI::App& app, int& status) {
       "Example: graze query --self arm.off --csv pairs.csv\n"
       "Example: graze query arm.off table.off --between --csv pairs.csv");
   auto options = std::make_shared<QueryOptions>();
-  command
-      ->add_option(
-          "files", options->files,
-          "Reference triangle (a text file of nine numbers, or MESH#FACE) and mesh (" + strata::mesh_formats() + ")")
-      ->option_text("REF MESH");
-  command
-      ->add_option("--self", options->self,
-                   "Mesh to test against itself, instead of REF MESH; finds the triangles that pierce each other")
-      ->excludes("files")
-      ->option_text("MESH");
+  add_valued(
+      *command, "files", options->files, "REF MESH",
+      "Reference triangle (a text file of nine numbers, or MESH#FACE) and mesh (" + strata::mesh_formats() + ")");
+  add_valued(*command, "--self", options->self, "MESH",
+             "Mesh to test against itself, instead of REF MESH; finds the triangles that pierce each other")
+      ->excludes("files");
   command
       ->add_flag("--between", options->between,
                  "Find all intersecting pairs of two meshes, which are given instead of REF MESH")
       ->excludes("--self");
   CLI::Option* any = command->add_flag("--any", options->any, "Stop at the first hit");
   command->add_flag("--all", options->all, "Find all hits (default)")->excludes(any);
-  command->add_option("--executor", options->executors, "Executors that decide; several are compared")
+  add_valued(*command, "--executor", options->executors, "auto|one-core|all-cores|one-gpu|all-gpus,…",
+             "Executors that decide; several are compared")
       ->delimiter(',')
       ->transform(one_of(kExecutors, Chosen::word))
-      ->option_text("auto|one-core|all-cores|one-gpu|all-gpus,…")
       ->default_str("auto");
   add_globs(*command, "--lanes", options->lanes.globs, "Patterns of the lanes that decide; several are compared")
       ->default_str("exact, and those of --subject");
   add_subject_options(*command, options->lanes);
   add_exact_input(*command, options->exact_input);
   command->add_flag("--json", options->json, "Print one JSON object; it lists the first 100,000 hits");
-  command
-      ->add_option("--csv", options->csv,
-                   "CSV file for the pairs that intersect: indices of the faces, contact and kind")
-      ->option_text("FILE");
-  command->add_option("--obj", options->obj, "OBJ file for the reference and the hits")->option_text("FILE");
-  command->add_option("--pairs", options->pairs, "File of pairs for the hits")->option_text("FILE");
-  command->add_option("--mismatches", options->mismatches, "File for triangles on which lanes or executors disagree")
-      ->default_str("mismatches.pairs")
-      ->option_text("FILE");
+  add_valued(*command, "--csv", options->csv, "FILE",
+             "CSV file for the pairs that intersect: indices of the faces, contact and kind");
+  add_valued(*command, "--obj", options->obj, "FILE", "OBJ file for the reference and the hits");
+  add_valued(*command, "--pairs", options->pairs, "FILE", "File of pairs for the hits");
+  add_valued(*command, "--mismatches", options->mismatches, "FILE",
+             "File for triangles on which lanes or executors disagree")
+      ->default_str("mismatches.pairs");
   command->callback([options, &status] {
     expect_different_files(*options);
     if (options->between || !options->self.empty()) return query_all_pairs(*options, status);

@@ -145,17 +145,13 @@ void add_report(CLI::App& app, int&) {
   auto options = std::make_shared<ReportOptions>();
   command->add_option("DIR", options->directory,
                       "Campaign directory; report.html, report.json and the tables are written into it");
-  command
-      ->add_option("--compare", options->compare,
-                   "Two campaigns: writes a report on the second and on its changes since the first, as compare.html "
-                   "and compare.json in the second directory")
-      ->expected(2)
-      ->option_text("DIR1 DIR2");
-  command
-      ->add_option("--from", options->from,
-                   "Existing report.json from which only the page is written, to the file given by --out")
-      ->option_text("FILE");
-  command->add_option("--out", options->out, "File for the page of --from")->option_text("FILE");
+  add_valued(*command, "--compare", options->compare, "DIR1 DIR2",
+             "Two campaigns: writes a report on the second and on its changes since the first, as compare.html "
+             "and compare.json in the second directory")
+      ->expected(2);
+  add_valued(*command, "--from", options->from, "FILE",
+             "Existing report.json from which only the page is written, to the file given by --out");
+  add_valued(*command, "--out", options->out, "FILE", "File for the page of --from");
   command->callback([options] { report(*options); });
 }
 

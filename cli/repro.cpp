@@ -153,15 +153,13 @@ void add_repro(CLI::App& app, int& status) {
   add_lane_options(*command, *lanes);
   add_resubject_option(*command, *lanes);
   auto emitted = std::make_shared<std::string>();
-  command
-      ->add_option(
-          "--emit", *emitted,
-          "Language of a program to print instead, for the first case on which a lane of --lanes is wrong; it "
-          "includes or calls your own code. cpp and gtest show a CPU lane, cuda a CUDA lane, gtest also your own CUDA "
-          "code, python and cgal the truth")
+  add_valued(
+      *command, "--emit", *emitted, "cpp|cuda|python|obj|cgal|gtest",
+      "Language of a program to print instead, for the first case on which a lane of --lanes is wrong; it "
+      "includes or calls your own code. cpp and gtest show a CPU lane, cuda a CUDA lane, gtest also your own CUDA "
+      "code, python and cgal the truth")
       ->transform(one_of(std::vector<std::string>(std::begin(reports::kSnippetKinds), std::end(reports::kSnippetKinds)),
-                         Chosen::word))
-      ->option_text("cpp|cuda|python|obj|cgal|gtest");
+                         Chosen::word));
   command->callback([name, lanes, emitted, &status] { status = repro(*name, *lanes, *emitted); });
 }
 

@@ -184,32 +184,25 @@ void add_scene(CLI::App& app, int&) {
               ") or one file of pairs (.pairs). One mesh is measured against itself, several against each other. With "
               "--sufficient also a scene (.toml)")
       ->required();
-  command
-      ->add_option("--poses", options->poses,
-                   "CSV file of poses of the mesh, one per line: twelve numbers, the three rows of a matrix (R | t)")
-      ->option_text("FILE");
-  command->add_option("--units", options->units, "Unit of the coordinates")
+  add_valued(*command, "--poses", options->poses, "FILE",
+             "CSV file of poses of the mesh, one per line: twelve numbers, the three rows of a matrix (R | t)");
+  add_valued(*command, "--units", options->units, "NAME", "Unit of the coordinates")
       ->check(CLI::Validator(
           [](const std::string& text) {
             return strata::is_units(text) ? "" : "expected units of " + strata::kUnits + ", found " + shown(text);
           },
           ""))
-      ->capture_default_str()
-      ->option_text("NAME");
-  command->add_option("--out", options->out, "File for the scene (default: standard output)")->option_text("FILE");
+      ->capture_default_str();
+  add_valued(*command, "--out", options->out, "FILE", "File for the scene (default: standard output)");
   static_assert(static_cast<int>(PairTypes::f32) == 0 && static_cast<int>(PairTypes::f64) == 1);
-  command
-      ->add_option("--coordinates", options->coordinates,
-                   "Coordinates of the scene: float32, or doubles as they are in the file")
+  add_valued(*command, "--coordinates", options->coordinates, "f32|f64",
+             "Coordinates of the scene: float32, or doubles as they are in the file")
       ->transform(one_of({"f32", "f64"}, Chosen::place))
-      ->option_text("f32|f64")
       ->default_str("f64 if one has more digits than float32 holds");
   add_exact_input(*command, options->exact_input);
-  command
-      ->add_option("--sufficient", options->sufficient,
-                   "Highest rate of wrong verdicts; finds the cheapest lane that stays within it in the scene")
-      ->check(number(1e-6, 0.5))
-      ->option_text("RATE");
+  add_valued(*command, "--sufficient", options->sufficient, "RATE",
+             "Highest rate of wrong verdicts; finds the cheapest lane that stays within it in the scene")
+      ->check(number(1e-6, 0.5));
   command->callback([options, command] {
     const bool is_scene = fs::path(options->files[0]).extension() == ".toml";
     if (options->sufficient > 0 && options->out.empty() != is_scene)
@@ -254,8 +247,8 @@ void add_draw_options(CLI::App& command, DrawOptions& options, OfBothTypes both)
   add_globs(command, "--strata", options.strata, "Patterns of the strata to draw from");
   add_coordinates_option(command, options.coordinates, both);
   command.get_option("--coordinates")->default_str("f32, or those of the scene");
-  command.add_option("--scene", options.scene, "Scene file to draw pairs in, written by `graze scene` or by hand")
-      ->option_text("FILE");
+  add_valued(command, "--scene", options.scene, "FILE",
+             "Scene file to draw pairs in, written by `graze scene` or by hand");
 }
 
 void take_type_of_scene(const CLI::App& command, DrawOptions& options) {

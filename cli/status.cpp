@@ -243,14 +243,12 @@ void add_status(CLI::App& app, int& status) {
       ->add_option("DIR", options->directories,
                    "Directories of shards or campaigns, including those that mpirun started")
       ->required();
-  command
-      ->add_option("--stalled", options->stalled,
-                   "Time without an update after which a run counts as stalled, in seconds")
+  add_valued(*command, "--stalled", options->stalled, "SECONDS",
+             "Time without an update after which a run counts as stalled, in seconds")
       ->transform(whole_number(1, 1'000'000'000))
-      ->capture_default_str()
-      ->option_text("SECONDS");
-  command->add_option("--prometheus", options->prometheus, "File to write the figures to, in Prometheus' text format")
-      ->option_text("FILE");
+      ->capture_default_str();
+  add_valued(*command, "--prometheus", options->prometheus, "FILE",
+             "File to write the figures to, in Prometheus' text format");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->callback([options, &status] { status = status_command(*options); });
 }

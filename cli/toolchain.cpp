@@ -305,37 +305,29 @@ void add_toolchain(CLI::App& app, int& status) {
                                          "as documented");
   command->footer("Example: graze toolchain 'g++ -O2 -march=haswell'");
   auto options = std::make_shared<Options>();
-  command
-      ->add_option("toolchain", options->what,
-                   "Name of a toolchain, the command of a compiler with its flags, or hip: what hipcc fuses for AMD's "
-                   "GPUs (default: list the toolchains)")
-      ->option_text("NAME|COMMAND|hip");
-  CLI::Option* run =
-      command->add_option("--run", options->run, "Command that runs the result, such as qemu-aarch64; {} is the result")
-          ->option_text("COMMAND");
+  add_valued(*command, "toolchain", options->what, "NAME|COMMAND|hip",
+             "Name of a toolchain, the command of a compiler with its flags, or hip: what hipcc fuses for AMD's "
+             "GPUs (default: list the toolchains)");
+  CLI::Option* run = add_valued(*command, "--run", options->run, "COMMAND",
+                                "Command that runs the result, such as qemu-aarch64; {} is the result");
   CLI::Option* claims =
-      command
-          ->add_option(
-              "--claims", options->claims,
-              "What the compiler's flags are documented to do: rounded, contracted, excess or fast (default: from the "
-              "table of toolchains, else from the flags of GCC or clang)")
-          ->transform(one_of({"rounded", "contracted", "excess", "fast"}, Chosen::place))
-          ->option_text("WORD");
+      add_valued(
+          *command, "--claims", options->claims, "WORD",
+          "What the compiler's flags are documented to do: rounded, contracted, excess or fast (default: from the "
+          "table of toolchains, else from the flags of GCC or clang)")
+          ->transform(one_of({"rounded", "contracted", "excess", "fast"}, Chosen::place));
   command
       ->add_option_function<std::string>(
           "--toolchains", [options](const std::string& file) { options->list += ',' + file; },
           "File with further toolchains; see docs/toolchains.md")
       ->option_text("FILE.toml");
-  CLI::Option* json = command->add_option("--json", options->json, "File for the results")->option_text("FILE");
-  CLI::Option* subject = command
-                             ->add_option("--subject", options->subjects,
-                                          "C or C++ source whose fused products are listed instead of those of the "
-                                          "published algorithms. May be repeated")
-                             ->allow_extra_args(false)
-                             ->option_text("NAME=FILE[:FUNCTION]");
-  CLI::Option* flags = command->add_option("--flags", options->flags, "Compiler flags for the source")
+  CLI::Option* json = add_valued(*command, "--json", options->json, "FILE", "File for the results");
+  CLI::Option* subject = add_valued(*command, "--subject", options->subjects, "NAME=FILE[:FUNCTION]",
+                                    "C or C++ source whose fused products are listed instead of those of the "
+                                    "published algorithms. May be repeated")
+                             ->allow_extra_args(false);
+  CLI::Option* flags = add_valued(*command, "--flags", options->flags, "TEXT", "Compiler flags for the source")
                            ->allow_extra_args(false)
-                           ->option_text("TEXT")
                            ->needs(subject);
   for (CLI::Option* option : {run, claims, json, subject, flags}) option->needs(command->get_option("toolchain"));
   command->callback([options, &status] { status = toolchain(*options); });

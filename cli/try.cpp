@@ -353,30 +353,24 @@ void add_try(CLI::App& app, int& status) {
           "is not `intersects`, a Python function (mine.py:meet), a Python or JavaScript program, or cmd:COMMAND; see "
           "docs/your_own_code.md")
       ->required();
-  command->add_option("WHERE", options->where, "Mesh or scene to draw the pairs in (default: all strata)")
-      ->option_text("MESH|SCENE");
-  command->add_option("--pairs", options->pairs, "Number of pairs (default: 40000, or 2000 for a program)")
-      ->transform(whole_number(1, kMostWhole))
-      ->option_text("N");
+  add_valued(*command, "WHERE", options->where, "MESH|SCENE",
+             "Mesh or scene to draw the pairs in (default: all strata)");
+  add_valued(*command, "--pairs", options->pairs, "N", "Number of pairs (default: 40000, or 2000 for a program)")
+      ->transform(whole_number(1, kMostWhole));
   add_count(*command, "--seed", options->fuzz.seed, 0, kMostWhole, "Seed of the pairs");
   add_coordinates_option(*command, options->fuzz.coordinates, OfBothTypes::no);
   command->get_option("--coordinates")
       ->default_str("f32, those of the scene, or f64 for a mesh that needs it and code in double");
   add_threads_option(*command, options->fuzz.threads);
-  command
-      ->add_option("--flags", options->fuzz.lanes.flags, "Compiler flags for a source, such as --flags='-O3 -Iinclude'")
-      ->allow_extra_args(false)
-      ->option_text("TEXT");
-  command
-      ->add_option("--subject-timeout", options->timeout,
-                   "Time limit for one pair, in seconds (default: 1, or 10 for a program)")
-      ->check(number(0.001, 86400.0))
-      ->option_text("SECONDS");
-  command
-      ->add_option("--out", options->fuzz.out,
-                   "Campaign directory; an earlier run on the same file is renamed to DIR.1, DIR.2, …")
-      ->capture_default_str()
-      ->option_text("DIR");
+  add_valued(*command, "--flags", options->fuzz.lanes.flags, "TEXT",
+             "Compiler flags for a source, such as --flags='-O3 -Iinclude'")
+      ->allow_extra_args(false);
+  add_valued(*command, "--subject-timeout", options->timeout, "SECONDS",
+             "Time limit for one pair, in seconds (default: 1, or 10 for a program)")
+      ->check(number(0.001, 86400.0));
+  add_valued(*command, "--out", options->fuzz.out, "DIR",
+             "Campaign directory; an earlier run on the same file is renamed to DIR.1, DIR.2, …")
+      ->capture_default_str();
   command->add_flag("--json", options->json, "Print the answer as JSON");
   add_junit(*command, options->fuzz.junit, "one test for each build and stratum");
   command->callback([options, command, &status] {

@@ -286,31 +286,24 @@ void add_tune(CLI::App& app, int& status) {
       "Example: graze tune mine/f32/cpu --subject mine=./mine.cpp --pairs 2k\n"
       "Example: graze tune moller_1997/f32/cpu moller_1997/f32/cuda-fma --agree");
   const auto options = std::make_shared<TuneOptions>();
-  command
-      ->add_option("LANE", options->lanes,
-                   "Lane without a policy; with --agree, two published lanes of one algorithm and scalar")
-      ->required()
-      ->option_text("LANE [LANE]");
+  add_valued(*command, "LANE", options->lanes, "LANE [LANE]",
+             "Lane without a policy; with --agree, two published lanes of one algorithm and scalar")
+      ->required();
   command->add_flag("--agree", options->agree,
                     "Find the smallest tolerance under which two lanes give the same verdicts, right or wrong");
   add_subject_options(*command, options->own_code);
   add_resubject_option(*command, options->own_code);
-  command
-      ->add_option(
-          "--epsilon", options->epsilon,
-          "Epsilon of your own C, C++ or CUDA source: the name of a constant, or a number as the source writes it. "
-          "The source is built again with other values")
-      ->option_text("NAME")
+  add_valued(*command, "--epsilon", options->epsilon, "NAME",
+             "Epsilon of your own C, C++ or CUDA source: the name of a constant, or a number as the source writes it. "
+             "The source is built again with other values")
       ->default_str("the obvious one");
   for (const char* of_own_code : {"--resubject", "--epsilon"}) command->get_option("--agree")->excludes(of_own_code);
   add_draw_options(*command, *options);
-  command
-      ->add_option("--from", options->from,
-                   "Campaign on whose pairs the choice is made, including the disagreements that it counted")
+  add_valued(*command, "--from", options->from, "DIR",
+             "Campaign on whose pairs the choice is made, including the disagreements that it counted")
       ->excludes("--strata")
       ->excludes("--coordinates")
-      ->excludes("--scene")
-      ->option_text("DIR");
+      ->excludes("--scene");
   add_count(*command, "--pairs", options->pairs, 10, kMostWhole,
             "Number of pairs on which the choice is tested; without --from, the choice is made on other pairs, a tenth "
             "as many")
@@ -323,22 +316,18 @@ void add_tune(CLI::App& app, int& status) {
   forbid->transform(one_of({"false-negative", "false-positive", "any"}, Chosen::place))
       ->option_text("false-negative|false-positive|any")
       ->default_str("any");
-  command
-      ->add_option("--max-rate", options->max_rate,
-                   "Highest rate of the forbidden errors; with --agree, of differing verdicts")
+  add_valued(*command, "--max-rate", options->max_rate, "RATE",
+             "Highest rate of the forbidden errors; with --agree, of differing verdicts")
       ->check(number(1e-15, 1.0))
-      ->capture_default_str()
-      ->option_text("RATE");
+      ->capture_default_str();
   CLI::Option* const max_other = command->add_option(
       "--max-other", options->max_other,
       "If --forbid names one kind of error: highest rate of the other kind at which a tolerance is still useful");
   max_other->check(number(0.0, 1.0))->capture_default_str()->option_text("RATE");
   add_threads_option(*command, options->threads);
-  command
-      ->add_option("--out", options->out,
-                   "Folder for the JSON file, curves.svg, policy.h (without --agree) and the smallest cases")
-      ->default_str("tuned; with --agree: agreed")
-      ->option_text("DIR");
+  add_valued(*command, "--out", options->out, "DIR",
+             "Folder for the JSON file, curves.svg, policy.h (without --agree) and the smallest cases")
+      ->default_str("tuned; with --agree: agreed");
   command->callback([options, command, forbid, max_other, &status] {
     if (options->agree != (options->lanes.size() == 2) || options->lanes.size() > 2)
       throw UsageError(fmt::format("give one lane, or two lanes with --agree; got {} lane{} {} --agree",

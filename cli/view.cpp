@@ -235,19 +235,16 @@ void add_view(CLI::App& app, int&) {
                       "Mesh whose triangles are shown against WHAT, which is then a reference triangle as for `graze "
                       "query`: a file of "
                       "nine numbers, or MESH#FACE");
-  command
-      ->add_option(
-          "--random", *random,
-          "Number of random triangles to show first, drawn as in the thesis of 2012, against the thesis's reference")
+  add_valued(*command, "--random", *random, "N",
+             "Number of random triangles to show first, drawn as in the thesis of 2012, against the thesis's reference")
       ->transform(whole_number(1, reports::kMostViewedTriangles))
-      ->excludes(pairs)
-      ->option_text("N");
+      ->excludes(pairs);
   const auto exact_input = std::make_shared<bool>(false);
   add_exact_input(*command, *exact_input);
   const auto own_code = std::make_shared<LaneOptions>();
   add_subject_options(*command, *own_code);
   add_resubject_option(*command, *own_code);
-  command->add_option("--out", *out, "File for the page")->capture_default_str()->option_text("FILE");
+  add_valued(*command, "--out", *out, "FILE", "File for the page")->capture_default_str();
   command->callback([=] { view(*own_code, *what, *mesh, *exact_input, *random, *out); });
 }
 

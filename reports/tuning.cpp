@@ -136,6 +136,8 @@ std::string zero_words(const TuneQuestion& q, const Tuned& t) {
       policy_words(q, zero.policy), errors(zero), policy_words(q, least.policy), errors(least));
 }
 
+constexpr std::string_view kNotScaled = "A pair that would lose bits is left as it is.";
+
 std::string power(int k) { return k > 0 ? fmt::format("grow by 2^{}", k) : fmt::format("shrink by 2^{}", -k); }
 
 Json errors_json(const PolicyErrors& e) {
@@ -193,16 +195,17 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
   const analysis::ScaleBreak& scale = tuned.scale;
   for (const auto& [k, at] : {std::pair{scale.up, scale.at_up}, {scale.down, scale.at_down}}) {
     if (k != 0)
-      result.push_back(fmt::format("Scale break: if the pairs {}, {} more than double, to {} from {}.", power(k),
-                                   doubled_words(question, scale.here, at), errors(at), errors(scale.here)));
+      result.push_back(fmt::format("Scale break: if the pairs {}, {} more than double, to {} from {}. {}", power(k),
+                                   doubled_words(question, scale.here, at), errors(at), errors(scale.here),
+                                   kNotScaled));
   }
   if (!tuned.chosen.empty() && scale.up == 0 && scale.down == 0)
     result.push_back(fmt::format(
-        "Scale: with {1}, {2} shown to double when the pairs are scaled by 2^-{0} to 2^{0}, on {3}.",
+        "Scale: with {1}, {2} shown to double when the pairs are scaled by 2^±1, 2^±2, 2^±4 … 2^±{0}, on {3}. {4}",
         analysis::kMostScale, choice_words(question, tuned.chosen),
         question.forbid == Forbid::any ? "errors are not"
                                        : fmt::format("neither errors nor {} alone are", words(question.forbid)),
-        counted(scale.here.pairs, "pair")));
+        counted(scale.here.pairs, "pair"), kNotScaled));
   for (const analysis::Interaction& i : tuned.interactions) {
     result.push_back(fmt::format(
         "Two sites: with {} alone, {} verdicts are wrong, with {} alone {}, and with both {}, on {} used to choose.",

@@ -31,10 +31,10 @@ struct Other {
 
 struct Canary {
   std::string name, code;
-  Rounding least;       // the strictest rounding that permits `others`
-  bool across = false;  // whether `least` must be permitted across statements
+  Rounding least;  // the strictest rounding that permits `others`
   std::vector<Expected> as_written;
   std::vector<Other> others = {};
+  bool across = false;  // whether `least` must be permitted across statements
 };
 
 template <class Real>
@@ -69,12 +69,11 @@ std::vector<Canary> canaries() {
   for (int kept = 48; kept <= 62; ++kept) regrouped.push_back({fast, "regrouped", all({static_cast<Real>(kept)})});
   regrouped.push_back({fast, "regrouped", all({0})});
   return {
-      {"expression", "a*b + c", contracted, false, all({0}), not_rounded},
+      {"expression", "a*b + c", contracted, all({0}), not_rounded},
       // Here a*b = 1 - hh and c*d = 1 - 4hh.
       {"difference",
        "a*b - c*d",
        contracted,
-       false,
        all({0}),
        {{contracted, "left fused", all({-hh})},
         {contracted, "right fused", all({4 * hh})},
@@ -83,7 +82,6 @@ std::vector<Canary> canaries() {
       {"dot",
        "dot product of 3",
        contracted,
-       false,
        all({0, 0}),
        {{contracted, "1st, 3rd fused", all({-hh, 4 * hh})},
         {contracted, "2nd, 3rd fused", all({4 * hh, 4 * hh})},
@@ -94,92 +92,78 @@ std::vector<Canary> canaries() {
       {"loop",
        "sum += a[i]*b[i]",
        contracted,
-       false,
        all({0}),
        {{contracted, "fused", all({4 * hh})}, {excess, "excess digits", all({3 * hh})}}},
-      {"statements", "t = a*b; t + c", contracted, true, all({0}), not_rounded},
-      {"inlined", "times(a, b) + c", contracted, true, all({0}), not_rounded},
-      {"called", "(*times)(a, b) + c", contracted, true, all({0}), not_rounded},
+      {"statements", "t = a*b; t + c", contracted, all({0}), not_rounded, true},
+      {"inlined", "times(a, b) + c", contracted, all({0}), not_rounded, true},
+      {"called", "(*times)(a, b) + c", contracted, all({0}), not_rounded, true},
       // Each lost term is u / 64.
       {"sum",
        "a + b + c",
        excess,
-       false,
        all({0}),
        {{excess, "excess digits", all({u / 64})}, {fast, "regrouped", all({u / 64})}}},
       {"sum_in_loop",
        "sum += a[i]",
        excess,
-       true,
        all({0}),
        {{excess, "excess digits", all({u / 32})},
         {fast, "regrouped", all({u / 64})},
-        {fast, "regrouped", all({u / 32})}}},
+        {fast, "regrouped", all({u / 32})}},
+       true},
       {"order",
        "order of a + b + c",
        fast,
-       false,
        all({1, 0, 0}),
        {{fast, "regrouped", all({0, 1, 0})}, {fast, "regrouped", all({0, 0, 1})}}},
-      {"order_in_loop", "order of sum += a[i]", fast, false, all({47}), regrouped},
+      {"order_in_loop", "order of sum += a[i]", fast, all({47}), regrouped},
       // The sums 1 + u and 1 + 3u lie halfway between neighbouring numbers. 1 + u (1 + 2u) lies just above halfway.
       {"nearest",
        "a + b",
        excess,
-       false,
        all({1, 1 + 4 * u, 1 + 2 * u}),
        {{excess, "rounded twice", all({1, 1 + 4 * u, 1})}, {excess, "too few digits", all({1, 1, 1})}}},
-      {"range", "a*b / c", excess, false, all({infinity}), {{excess, "excess range", all({large})}}},
-      {"range_assigned", "t = a*b; t / c", excess, true, all({infinity}), {{excess, "excess range", all({large})}}},
-      {"range_called", "(*times)(a, b) / c", excess, true, all({infinity}), {{excess, "excess range", all({large})}}},
-      {"range_stored", "a*b stored; a*b / c", fast, false, all({infinity}), {{excess, "excess range", all({large})}}},
+      {"range", "a*b / c", excess, all({infinity}), {{excess, "excess range", all({large})}}},
+      {"range_assigned", "t = a*b; t / c", excess, all({infinity}), {{excess, "excess range", all({large})}}, true},
+      {"range_called", "(*times)(a, b) / c", excess, all({infinity}), {{excess, "excess range", all({large})}}, true},
+      {"range_stored", "a*b stored; a*b / c", fast, all({infinity}), {{excess, "excess range", all({large})}}},
       // The divisor d is 41 for float and 49 for double. The product of d and its rounded reciprocal rounds to 1 - u.
       {"reciprocal",
        "a/d, b/d, c/d",
        fast,
-       false,
        all({1, 1, 1, 1}),
        {{fast, "times 1/d", all({1 - u, 1 - u, 1 - u, 1 - u}), true}}},
-      {"division", "a / b, hard cases", excess, false, {0, kQuotients}},
-      {"root", "sqrt(a), hard cases", excess, false, {0, kRoots}},
+      {"division", "a / b, hard cases", excess, {0, kQuotients}},
+      {"root", "sqrt(a), hard cases", excess, {0, kRoots}},
       // The results in order: (1 - hh) - 1; low + u rounded to even, up, and down; low + 3u rounded to even; u (1 -
       // 4uu) added to 1 + 2u; a product beyond the range; a little more than half of the least subnormal number, added
       // to twice that number; zeros.
-      {"fma", "fma(a, b, c)", fast, false,
+      {"fma", "fma(a, b, c)", fast,
        all({-hh, low, low + 2 * u, low, low + 4 * u, 1 + 2 * u, most, 3 * denormal, 0, -Real{0}})},
       {"identities",
        "a/a, a - a, 0*a",
        fast,
-       false,
        all({nan, nan, nan, nan}),
        {{fast, "simplified", all({1, 1, 0, 0}), true}}},
       {"subnormal_result",
        "subnormal result",
        fast,
-       false,
        all({least / 2, least / 2}),
        {{fast, "flushed to 0", all({0, 0}), true}}},
       {"subnormal_nearest",
        "a*b, subnormal",
        excess,
-       false,
        all({denormal}),
        {{excess, "rounded twice", all({2 * denormal})}, {fast, "flushed to 0", all({0})}}},
       // The input is three times the smallest positive subnormal number.
-      {"subnormal_input",
-       "subnormal input",
-       fast,
-       false,
-       all({3 * denormal * (most / 2)}),
-       {{fast, "read as 0", all({0})}}},
+      {"subnormal_input", "subnormal input", fast, all({3 * denormal * (most / 2)}), {{fast, "read as 0", all({0})}}},
       {"zeros",
        "signs of zeros",
        fast,
-       false,
        all({-Real{0}, 0, 0, -Real{0}}),
        {{fast, "signs ignored", all({0, -Real{0}, -Real{0}, 0}), true}}},
-      {"nan", "NaN comparisons", fast, false, {0, 1, 1, 0}, {{fast, "NaN ignored", {1, 0, 0, 1}, true}}},
-      {"infinity", "2*max, 1/0, max < inf", fast, false, {bits(infinity), bits(-infinity), 1, 1}},
+      {"nan", "NaN comparisons", fast, {0, 1, 1, 0}, {{fast, "NaN ignored", {1, 0, 0, 1}, true}}},
+      {"infinity", "2*max, 1/0, max < inf", fast, {bits(infinity), bits(-infinity), 1, 1}},
   };
 }
 

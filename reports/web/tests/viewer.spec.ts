@@ -247,7 +247,7 @@ test('a query is shown with all triangles, its hits and a lane’s errors', asyn
   await expect(page.locator('#field')).toContainText(
     `1,152 triangles against a, the reference: exact/f32/cpu hits ${exact}, wrong on 0 (outlined)`,
   );
-  await expect(page.locator('#board svg polygon[style*="--hit"]')).toHaveCount(exact);
+  await expect(page.locator('#board svg polygon[style*="--series-0"]')).toHaveCount(exact);
   await verdict(page, 'projected_sat/f32/cpu').click(); // wrong by logic
   await expect(page.locator('#field')).toContainText(
     `projected_sat/f32/cpu hits ${hits('projected_sat/f32/cpu').toLocaleString('en-US')}, wrong on `,

@@ -124,7 +124,7 @@ test('t shows all special cases of 2012, which are fixed', async ({ viewer }) =>
   await viewer.keyboard.press('t');
   await expect(viewer.locator('h1')).toHaveText('the ten special cases of 2012');
   await expect(viewer.locator('#field')).toContainText('10 triangles against a, the reference');
-  await expect(viewer.locator('#board svg polygon[style*="--hit"]')).toHaveCount(10); // all are meant to intersect
+  await expect(viewer.locator('#board svg polygon[style*="--series-0"]')).toHaveCount(10); // all are meant to intersect
   for (const key of ['+', '-']) {
     await viewer.keyboard.press(key);
     await expect(viewer.locator('.message')).toContainText('the special cases are fixed');

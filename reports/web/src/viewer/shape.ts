@@ -175,7 +175,7 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
   if (field) {
     for (const [colour, hit] of [
       ['--other', false],
-      ['--hit', true],
+      ['--series-0', true],
     ] as const)
       marks.push({
         colour,

@@ -28,6 +28,9 @@ function append(element: Element, children: Child[]) {
 export const button = (content: Child, press: (event: Event) => unknown, props: Props = {}) =>
   h('button', { type: 'button', ...props, onclick: press }, content);
 
+// A paragraph of text.
+export const paragraph = (...children: Child[]) => h('p', {}, ...children);
+
 export const list = (items: Child[], props: Props = {}) =>
   h(
     'ul',

@@ -4,7 +4,7 @@
 // and needles, which `graze pareto` measures.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named, x_label } from './chart';
-import { breakable, h, more_facts, on_width, section } from './dom';
+import { breakable, h, more_facts, on_width, paragraph, section } from './dom';
 import { figure, in_full, percent, power_of_two } from './format';
 import { times_fill, times_legend } from './heat';
 import { lane_picker, type Picker } from './lane_picker';
@@ -202,17 +202,13 @@ export function extremes_section(report: Report, pareto: Pareto | null) {
   return section(
     'extremes',
     'Extremes',
-    h(
-      'p',
-      {},
+    paragraph(
       'The maps show pairs that are very large, very small or far from the origin. The colour of a cell shows how many times as often a lane is wrong there as on the pairs nearest to 2⁰, the origin of the map. Near contacts are hard at every scale, so the share of errors alone would say little. The campaign has no pairs in a blank cell. ',
       h('b', {}, 'A thin cell'),
       ` has fewer than ${kFew} pairs, so chance may have coloured it.`,
     ),
     picker.element,
-    h(
-      'p',
-      {},
+    paragraph(
       '“As right” means that the lane errs on at most twice the share of pairs, or on at most 0.1 %, with 95 % confidence.',
       pareto
         ? ''
@@ -221,7 +217,7 @@ export function extremes_section(report: Report, pareto: Pareto | null) {
     words.element,
     times_legend(),
     figures.map(({ kind, title, says, element }) => [
-      h('div', { class: 'kept' }, h('h3', {}, title), h('p', {}, says), element),
+      h('div', { class: 'kept' }, h('h3', {}, title), paragraph(says), element),
       more_facts('The numbers as a table', () =>
         table_of<Cell>(
           [

@@ -2,7 +2,7 @@
 // Failures: a card for each kind, and a table of the signatures behind the kinds. The same filters apply to both.
 import { card_element, kind_id } from './card';
 import { has_viewer } from './card_viewer';
-import { button, code_block, h, section } from './dom';
+import { button, code_block, h, paragraph, section } from './dom';
 import { count, counted } from './format';
 import { kept_choice, kept_search } from './kept';
 import { kind_words } from './kind';
@@ -55,9 +55,7 @@ export function failure_sections(report: Report) {
     cell_note.replaceChildren(
       ...(rows.length
         ? [
-            h(
-              'p',
-              {},
+            paragraph(
               h('b', {}, words),
               `: ${counted(rows.length, 'signature')} ${rows.length === 1 ? 'keeps' : 'keep'} such pairs, from ${left ? counted(left, 'kind') : 'no kind'} with a card. `,
               clear,
@@ -68,7 +66,7 @@ export function failure_sections(report: Report) {
               'the command that shows one such pair',
             ),
           ]
-        : [h('p', {}, h('b', {}, words), ': no pair listed here shows such a verdict. ', clear)]),
+        : [paragraph(h('b', {}, words), ': no pair listed here shows such a verdict. ', clear)]),
       h('p', { class: 'label' }, 'Find all such pairs of the campaign again'),
       code_block(campaign_command(report, cell), 'the command that finds all such pairs'),
     );
@@ -137,9 +135,7 @@ export function failure_sections(report: Report) {
     section(
       'kinds',
       'Kinds of failure',
-      h(
-        'p',
-        {},
+      paragraph(
         'A kind groups failures with the same algorithm, cause, deciding source line and shape. The shape is degenerate, contained (one triangle in the other, in the same plane), coplanar or general. A pair on which lanes are wrong for different reasons belongs to several kinds. Graze examines one pair of each signature; in these counts it represents all pairs of that signature.',
         !has_viewer() &&
           ' Cards do not open in the viewer, because graze was built without the compiler for WebAssembly that the viewer needs.',
@@ -160,9 +156,7 @@ export function failure_sections(report: Report) {
     section(
       'signatures',
       'Signatures',
-      h(
-        'p',
-        {},
+      paragraph(
         'A signature counts failures that look alike: the same contact, a similar margin, and the same wrong lanes of the algorithm. The filters above the kinds of failure apply here too.',
       ),
       shown,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The league table: lanes × strata, with false positives and false negatives.
-import { breakable, h, marked, section } from './dom';
+import { breakable, h, marked, paragraph, section } from './dom';
 import { bare_percent, count, in_full } from './format';
 import { heat_class, heat_legend } from './heat';
 import { kept_choice, kept_search } from './kept';
@@ -160,9 +160,7 @@ export function league_section(report: Report) {
   return section(
     'league',
     'League table',
-    h(
-      'p',
-      {},
+    paragraph(
       marked(
         'All shares are in per cent. A **false positive** is the verdict “intersects” on triangles that are apart. Its share counts only the pairs that are apart. A **false negative** is the verdict “disjoint” on triangles that meet. Its share counts only the pairs that intersect. Each cell shows false positives above false negatives. Click a column’s heading to sort by that column.',
       ),

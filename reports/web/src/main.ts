@@ -5,7 +5,7 @@ import { kind_id } from './card';
 import { follow_viewer } from './card_viewer';
 import { discrepancy_section, pareto_section, tuned_section } from './choices';
 import { compare_section } from './compare';
-import { h } from './dom';
+import { h, paragraph } from './dom';
 import { count } from './format';
 import { extremes_section } from './extremes';
 import { failure_sections } from './failures';
@@ -47,9 +47,7 @@ function build(report: Report, costs: Costs | null, { tuned, pareto, discrepancy
         'header',
         {},
         h('h1', {}, 'Graze: discrepancy report'),
-        h(
-          'p',
-          {},
+        paragraph(
           `Where triangle-triangle tests stop being right: ${count(pairs)} pairs of ${report.strata.length} ${report.strata.length === 1 ? 'stratum' : 'strata'}, ${report.lanes.length} lanes, seed ${seed}`,
         ),
       ),

@@ -2,7 +2,7 @@
 // Error against margin: the share of wrong verdicts by the exact margin in ulps, and the threshold at or above which no
 // error was seen.
 import { series_colour } from './chart';
-import { breakable, h, marked, more_facts, on_width, section } from './dom';
+import { breakable, h, marked, more_facts, on_width, paragraph, section } from './dom';
 import { in_full, percent_bound, power_of_two } from './format';
 import { kept_choice } from './kept';
 import { lane_picker, type Picker } from './lane_picker';
@@ -109,9 +109,7 @@ export function margins_section(report: Report) {
   return section(
     'margins',
     'Error rate against margin',
-    h(
-      'p',
-      {},
+    paragraph(
       'The chart shows how often a lane is wrong at each margin, which is the exact distance or depth in ulps. Pairs on the right are apart, so errors are false positives. Pairs on the left intersect, so errors are false negatives. Pairs in the middle touch.',
     ),
     h('div', { class: 'controls' }, share.element),
@@ -119,9 +117,7 @@ export function margins_section(report: Report) {
     figure_element,
     key,
     h('h3', {}, 'From which margin upwards can a lane be trusted?'),
-    h(
-      'p',
-      {},
+    paragraph(
       'The answer depends on the pairs. For the chosen pairs, the table shows the smallest margin (a power of two) at or above which no error was seen. It also shows the number of pairs beyond that margin, and a bound on the error rate there. The bound holds with 95 % confidence for a threshold that was fixed before the campaign. These thresholds come from the same data, so confirm them with another seed.',
     ),
     h('div', { class: 'controls' }, trust.element),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Method and definitions, in plain words.
-import { h, marked, section } from './dom';
+import { h, marked, paragraph, section } from './dom';
 
 const kTerms = [
   ['Pair', 'Two triangles, given by 18 float32 numbers. The stored bits are the input: nothing rounds them again.'],
@@ -63,9 +63,7 @@ export function method_section() {
   return section(
     'method',
     'Method and definitions',
-    h(
-      'p',
-      {},
+    paragraph(
       'Every pair is drawn by its stratum, decided by every lane, and judged by exact arithmetic. This page recomputes nothing: it shows the numbers of the campaign’s summary and cases.',
     ),
     h(

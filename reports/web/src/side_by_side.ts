@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares two lanes of one algorithm: the effects of the compiler's contraction and of the precision.
 import { series_colour } from './chart';
-import { choice, h, on_width, section } from './dom';
+import { choice, h, on_width, paragraph, section } from './dom';
 import { in_full, percent } from './format';
 import { heat_class } from './heat';
 import { lane_picker } from './lane_picker';
@@ -77,9 +77,7 @@ function by_margin(report: Report) {
   );
   return [
     h('h3', {}, 'At which margins do lanes differ from the cpu lane?'),
-    h(
-      'p',
-      {},
+    paragraph(
       'The chart shows how often a lane’s verdict differs from that of the cpu lane of its algorithm and precision, against the exact margin. CUDA without contraction has the same verdicts as cpu, so the curves of CUDA with contraction compare with both. f32 and f64 are not compared pair by pair.',
     ),
     picker.element,
@@ -124,7 +122,7 @@ export function side_by_side_section(report: Report) {
     );
     const show = () => table.show(rows);
     show();
-    return [{ show, element: h('div', { class: 'beside-one' }, h('h3', {}, title), h('p', {}, says), table.element) }];
+    return [{ show, element: h('div', { class: 'beside-one' }, h('h3', {}, title), paragraph(says), table.element) }];
   });
   if (!tables.length) return null;
   const options: [string, string][] = [

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the verdicts of each algorithm change with the compiler and the processor.
-import { breakable, choice, h, list, section, sentence } from './dom';
+import { breakable, choice, h, list, paragraph, section, sentence } from './dom';
 import { in_full, percent } from './format';
 import { heat_class } from './heat';
 import type { Report, ToolchainMap } from './report';
@@ -45,11 +45,7 @@ export function toolchains_section(report: Report) {
   return section(
     'toolchains',
     'Toolchains',
-    h(
-      'p',
-      {},
-      'Each toolchain compiles the same source for its processor. The cpu and cuda lanes are from this build.',
-    ),
+    paragraph('Each toolchain compiles the same source for its processor. The cpu and cuda lanes are from this build.'),
     list(map.sentences.map(sentence)),
     h(
       'div',

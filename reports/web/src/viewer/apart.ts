@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Explains why a GPU lane decides differently from the same source on the CPU: the first comparison with different
 // outcomes, the values there, and the operations that nvcc fused.
-import { h, marked, table, table_row, type Child } from '../dom';
+import { h, marked, paragraph, table, table_row, type Child } from '../dom';
 import { figure } from '../format';
 import type { Site, Step } from './graze.js';
 import type { Model } from './model';
@@ -124,9 +124,7 @@ function parting_table(
 
 function places(sites: Site[]): Child {
   const all = [...new Map(sites.map((site) => [`${site.line} ${site.from}`, site])).values()];
-  return h(
-    'p',
-    {},
+  return paragraph(
     `Fusing only ${all.length > 1 ? 'at these places' : 'here'} already gives the GPU’s verdict: `,
     all
       .slice(0, kMostPlaces)
@@ -154,15 +152,13 @@ export function apart(model: Model, lane: string): { parts: Child[]; brief: Chil
     cause = sites.length
       ? `The cause is **contraction**: for the GPU nvcc fuses a multiplication and the following addition, \`a * b + c\`, into one operation that rounds once; the CPU rounds twice, after each of them. So the last digits differ, and here they decide. Built with \`-fmad=false\`, the GPU says ${decided.verdicts[lane.replace('cuda-fma', 'cuda-nofma')]}.`
       : 'Which operation makes the difference is **not settled**.';
-  const parts: Child[] = [h('p', {}, marked(says + cause))];
+  const parts: Child[] = [paragraph(marked(says + cause))];
   let brief: Child = null;
   if (found) {
     const [mine, theirs] = [known.steps[found[0]], other.steps[found[1]]],
       last = (steps: Step[], at: number) => !steps.slice(at + 1).some((step) => step.relation);
     parts.push(
-      h(
-        'p',
-        {},
+      paragraph(
         'Both run the same source on the same numbers. The first comparison with a different outcome is at ',
         quoted(mine.line),
       ),
@@ -195,9 +191,7 @@ export function apart(model: Model, lane: string): { parts: Child[]; brief: Chil
     ];
     const [long, bits] = scalar === 'f32' ? ['float32', 24] : ['float64', 53];
     parts.push(
-      h(
-        'p',
-        {},
+      paragraph(
         h(
           'span',
           { class: 'small' },
@@ -217,19 +211,17 @@ export function apart(model: Model, lane: string): { parts: Child[]; brief: Chil
       mine.exactRight === 0 &&
       mine.exactLeft === 0 &&
       'With 113 bits the value is 0: any other value there is a rounding error, and its sign decides.';
-    if (asked || noise) parts.push(h('p', {}, asked, noise));
+    if (asked || noise) parts.push(paragraph(asked, noise));
     if (!known.own)
       parts.push(
-        h(
-          'p',
-          {},
+        paragraph(
           marked(
             'The GPU’s numbers here are **not settled**: they come from a rule of contraction that gives the lane’s verdict.',
           ),
         ),
       );
   } else {
-    parts.push(h('p', {}, marked('Which comparison is the first with different outcomes is **not settled**.')));
+    parts.push(paragraph(marked('Which comparison is the first with different outcomes is **not settled**.')));
   }
   if (sites.length) parts.push(places(sites));
   return { parts, brief };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // All keys, and the help that lists them.
-import { h, table_row } from '../dom';
+import { h, paragraph, table_row } from '../dom';
 
 // keys: as in KeyboardEvent.key, without Shift and Alt; shown: for readers. of_2012: whether the thesis's viewer had
 // the key.
@@ -36,9 +36,7 @@ export function keys(all: Key[], active: () => boolean) {
     { id: 'help', 'aria-labelledby': 'help-title' },
     h('form', { method: 'dialog', class: 'close' }, h('button', {}, 'Close')),
     h('h2', { id: 'help-title', tabindex: -1 }, 'Keys'),
-    h(
-      'p',
-      {},
+    paragraph(
       'Drag a vertex with mouse or finger to move it, with Shift for fine steps. Drag the background to turn the drawing. Keys work wherever the page has the focus, except in fields. Arrow keys and space work only in the drawing.',
     ),
     h(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws the ranges that the chosen lane compared on a line: intervals or projections. Also draws the same ranges
 // computed with 113 bits, and the ranges on the axis of the margin.
-import { choice, h, on_width, section, type Child } from '../dom';
+import { choice, h, on_width, paragraph, section, type Child } from '../dom';
 import { figure } from '../format';
 import { differing } from './apart';
 import { chart, type Row } from './chart';
@@ -53,9 +53,7 @@ export function on_a_line(model: Model) {
         ]
       : [];
     said.replaceChildren(
-      h(
-        'p',
-        {},
+      paragraph(
         how,
         h(
           'span',
@@ -92,9 +90,7 @@ export function on_a_line(model: Model) {
       );
     if (!axes.length)
       return said.replaceChildren(
-        h(
-          'p',
-          {},
+        paragraph(
           name === 'guigue_devillers_2003'
             ? 'This algorithm compares no ranges, only signs.'
             : kIntervals[name] || name === 'projected_sat' || name === 'separating_axes'

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Explains the chosen lane's verdict: where its run differs from the CPU's, or from a run with 113 bits.
-import { h, marked, scroller, table, type Child } from '../dom';
+import { h, marked, paragraph, scroller, table, type Child } from '../dom';
 import { apart, differing } from './apart';
 import type { Graze, Step, Verdict } from './graze.js';
 import type { Model } from './model';
@@ -114,9 +114,7 @@ export function why(model: Model) {
         {},
         found
           ? found.parts
-          : h(
-              'p',
-              {},
+          : paragraph(
               alone(known),
               known &&
                 !known.own &&

@@ -4,7 +4,16 @@
 import { figure } from './format';
 import type { Report } from './report';
 
-export const kChartStyle = { background: 'none', fontFamily: 'inherit', fontSize: '12px' };
+// The size, margins and style of a plot.
+export const frame = (width: number, height: number, [top, right, bottom, left]: [number, number, number, number]) => ({
+  width,
+  height,
+  marginTop: top,
+  marginRight: right,
+  marginBottom: bottom,
+  marginLeft: left,
+  style: { background: 'none', fontFamily: 'inherit', fontSize: '12px' },
+});
 
 // Shows the plot to screen readers as one image with this label. Moves the labels of the plot's parts to data-mark.
 export function named(plot: SVGSVGElement | HTMLElement, label: string) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sections for the results of `graze tune`, `graze pareto` and `graze discrepancy` in the campaign's folder, if any.
 import * as Plot from '@observablehq/plot';
-import { kChartStyle, named, shares_axis, x_label } from './chart';
+import { frame, named, shares_axis, x_label } from './chart';
 import { breakable, button, choice, code_block, copy_button, h, list, on_width, section, sentence } from './dom';
 import { count, noisy_mark, percent, percent_bound, power_of_two, spread_words } from './format';
 import type { Discrepancy, Errors, PolicyErrors, Report, Pareto, Tuned } from './report';
@@ -30,13 +30,7 @@ export function front(pareto: Pareto) {
   on_width(element, (width) => {
     const small = width < 520;
     const plot = Plot.plot({
-      width,
-      height: 330,
-      marginLeft: 54,
-      marginRight: 14,
-      marginTop: 22,
-      marginBottom: 40,
-      style: kChartStyle,
+      ...frame(width, 330, [22, 14, 40, 54]),
       x: {
         type: 'log',
         inset: 12,
@@ -235,13 +229,7 @@ export function tuned_section(tuned: Tuned) {
     );
     const chosen = points.filter((point) => point.policy === tuned.chosen);
     const plot = Plot.plot({
-      width,
-      height: width < 560 ? 280 : 340,
-      marginLeft: 54,
-      marginRight: 12,
-      marginTop: 14,
-      marginBottom: 44,
-      style: kChartStyle,
+      ...frame(width, width < 560 ? 280 : 340, [14, 12, 44, 54]),
       x: {
         ...x_label(
           curve().tolerance === 'rel'

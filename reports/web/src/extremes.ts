@@ -3,7 +3,7 @@
 // lane's error rate there to its rate on the pairs nearest to 2^0. A table with sentences also covers flat triangles
 // and needles, which `graze pareto` measures.
 import * as Plot from '@observablehq/plot';
-import { kChartStyle, named, x_label } from './chart';
+import { frame, named, x_label } from './chart';
 import { breakable, h, more_facts, on_width, paragraph, section } from './dom';
 import { figure, in_full, percent, power_of_two } from './format';
 import { times_fill, times_legend } from './heat';
@@ -136,13 +136,7 @@ export function extremes_section(report: Report, pareto: Pareto | null) {
     const ticks: number[] = [];
     for (let e = Math.ceil(from / every) * every; e <= to; e += every) ticks.push(e);
     const plot = Plot.plot({
-      width,
-      height: lanes.length * (small ? 34 : 24) + 66,
-      marginLeft: small ? 4 : 210,
-      marginRight: 14,
-      marginTop: 8,
-      marginBottom: 46,
-      style: kChartStyle,
+      ...frame(width, lanes.length * (small ? 34 : 24) + 66, [8, 14, 46, small ? 4 : 210]),
       x: {
         domain: [from, to],
         ticks,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The chart beside the answer: the errors of each lane by group of strata, and the lane's cost.
 import * as Plot from '@observablehq/plot';
-import { kChartStyle, named, shares_axis, x_label } from './chart';
+import { frame, named, shares_axis, x_label } from './chart';
 import { h, on_width } from './dom';
 import { count, in_full, is_noisy, nanoseconds, percent } from './format';
 import type { Costs, Report } from './report';
@@ -86,13 +86,7 @@ export function glance(report: Report, costs: Costs | null) {
     const small = width < 520,
       pitch = small ? 36 : 27;
     const plot = Plot.plot({
-      width,
-      height: rows.length * pitch + 62,
-      marginLeft: small ? 8 : 186,
-      marginRight: rows.some((row) => row.cost) ? 56 : 14,
-      marginTop: 20,
-      marginBottom: 42,
-      style: kChartStyle,
+      ...frame(width, rows.length * pitch + 62, [20, rows.some((row) => row.cost) ? 56 : 14, 42, small ? 8 : 186]),
       x: { ...axis.options, ...x_label('share of wrong verdicts', 38) },
       y: { domain: rows.map((row) => row.name), label: null, axis: small ? null : 'left', tickSize: 0 },
       symbol: { domain: report.groups.map((group) => group.id), range: [...kSymbols] },

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Describes a kind of failure: its title, its lanes, the origins of its pairs, their margins, and the worst pair.
 import * as Plot from '@observablehq/plot';
-import { kChartStyle, named, x_label } from './chart';
+import { frame, named, x_label } from './chart';
 import { breakable, code_block, h, on_width, type Child } from './dom';
 import { count, counted, figure, margin_order, margin_words } from './format';
 import type { FailureKind, Report } from './report';
@@ -72,13 +72,7 @@ function strata_histogram({ strata }: FailureKind) {
   const sum = bars.reduce((all, bar) => all + bar.pairs, 0);
   return histogram('strata', `Strata of the ${counted(sum, 'pair')} kept of this kind`, bars, (width) =>
     Plot.plot({
-      width,
-      height: 22 + 18 * bars.length,
-      marginLeft: 124,
-      marginRight: 40,
-      marginTop: 2,
-      marginBottom: 4,
-      style: kChartStyle,
+      ...frame(width, 22 + 18 * bars.length, [2, 40, 4, 124]),
       x: { axis: null },
       y: { domain: bars.map((bar) => bar.name), label: null, tickSize: 0 },
       marks: [
@@ -126,13 +120,7 @@ function margins_histogram(kind: FailureKind) {
     .join('      ');
   return histogram('margins', `Margins of the ${counted(kind.pairs, 'pair')} of this kind, in ulps`, bars, (width) =>
     Plot.plot({
-      width,
-      height: 128,
-      marginLeft: 12,
-      marginRight: 16,
-      marginTop: 6,
-      marginBottom: 36,
-      style: kChartStyle,
+      ...frame(width, 128, [6, 16, 36, 12]),
       x: {
         type: 'band',
         padding: 0.12,

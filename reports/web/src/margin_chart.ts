@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A share of pairs against the exact margin, with a curve for each lane.
 import * as Plot from '@observablehq/plot';
-import { kChartStyle, named, series_colour, series_dash, series_width, shares_axis, x_label } from './chart';
+import { frame, named, series_colour, series_dash, series_width, shares_axis, x_label } from './chart';
 import { h } from './dom';
 import { count, in_full, percent, percent_bound, power_of_two } from './format';
 import type { Report, Share } from './report';
@@ -153,13 +153,7 @@ export function margin_chart(
     }
     marks.push(Plot.tip(all, Plot.pointer({ x: 'x', y: (d: Dot) => y(d.share.share), title: 'words', maxRadius: 30 })));
     const plot = Plot.plot({
-      width,
-      height: small ? 320 : 420,
-      marginLeft: 58,
-      marginRight: 12,
-      marginBottom: 50,
-      marginTop: 26,
-      style: kChartStyle,
+      ...frame(width, small ? 320 : 420, [26, 12, 50, 58]),
       x: {
         domain: [-reach, reach],
         ticks,

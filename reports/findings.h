@@ -19,6 +19,20 @@ namespace graze::reports {
 std::vector<std::string> answer(const CampaignCounts& counts, const Costs* costs,
                                 const nlohmann::ordered_json& kinds = nullptr);
 
+// The sentences on which lane to use and which to avoid, based on counts and costs. If the intervals of a comparison
+// overlap, the sentence calls it "not settled".
+struct Sentence {
+  std::string text;
+  bool known = true;  // false if the sentence says that the campaign cannot tell
+};
+
+// Recommends the exact lane, and compares its cost with that of the fastest published lane.
+Sentence lane_to_use(const CampaignCounts& counts, const Costs* costs);
+
+// Requires for both: pairs, and a published lane.
+Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs);
+Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs);
+
 enum class Bound { none, lower, upper };
 
 // "12.3 %", "1 in 3,270", "0". Bounds are rounded outward: the printed number is never below an upper bound or above a

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests recommendations on artificial data that would reveal likely mistakes.
-#include "reports/recommendations.h"
+#include "reports/findings.h"
 
 #include <gtest/gtest.h>
 

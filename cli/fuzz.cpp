@@ -34,7 +34,7 @@
 #include "fuzz/minimise/minimised_cases.h"
 #include "fuzz/ranks/rank_campaign.h"
 #include "reports/junit.h"
-#include "reports/margin_figure.h"
+#include "reports/report.h"
 #include "reports/terminal.h"
 #include "strata/mesh.h"
 #include "subjects/subjects.h"

@@ -19,8 +19,6 @@
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/sealed.h"
 #include "reports/comparison.h"
-#include "reports/csv.h"
-#include "reports/margin_figure.h"
 #include "reports/page.h"
 
 namespace graze::cli {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reports/csv.h"
+// Writes a campaign's results as CSV.
+#include "reports/report.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +8,6 @@
 
 #include "fuzz/campaign/checked_summary.h"
 #include "reports/failure_cards.h"
-#include "reports/report.h"
 #include "reports/tables.h"
 #include "strata/groups.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reports/margin_figure.h"
+// A campaign's picture: how often each f32/cpu lane is wrong, against the size of the margin.
+#include "reports/report.h"
 
 #include <fmt/format.h>
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace graze::reports {
 
@@ -29,5 +30,18 @@ nlohmann::ordered_json read_report(const std::filesystem::path& file);
 
 // Reads the report's costs.json. Returns null if there is no such file.   Throws: as read_report does.
 nlohmann::ordered_json stored_costs(const std::filesystem::path& file, const nlohmann::ordered_json& report);
+
+struct CsvTable {
+  std::string name, text;  // name: "rates.csv"; text: a header row, then rows as in RFC 4180
+};
+
+// Returns the tables rates, margins, differs, thresholds, extremes and signatures, and the table compare if the report
+// has a comparison. Margins by stratum come from the campaign's directory.   Requires: a report of this campaign.
+std::vector<CsvTable> csv_tables(const std::filesystem::path& directory, const nlohmann::ordered_json& report);
+
+// Returns the campaign's picture, an SVG of 900 x 420: the share of wrong verdicts over all strata by margin bucket,
+// with a line for each f32/cpu lane. It is readable on light and dark backgrounds.
+// Requires: the contents of summary.json.
+std::string margin_figure(const nlohmann::ordered_json& summary);
 
 }  // namespace graze::reports

@@ -16,7 +16,6 @@
 #include "corpus/pair_format.h"
 #include "fuzz/sealed.h"
 #include "reports/comparison.h"
-#include "reports/csv.h"
 #include "reports/failure_cards.h"
 #include "reports/page.h"
 #include "reports/pareto.h"

@@ -3,8 +3,8 @@
 
 #include <sstream>
 
-#include "reports/margin_figure.h"
 #include "reports/pareto.h"
+#include "reports/report.h"
 #include "reports/terminal.h"
 
 namespace graze::reports {

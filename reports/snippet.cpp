@@ -265,6 +265,7 @@ std::string snippet(SnippetKind kind, const SnippetCase& found) {
          {"type", type_name(id)},
          {"decide", call_of(*found.lane, kind == SnippetKind::cuda ? "graze::" + type_name(id) : "Algorithm").call},
          {"sources", amalgamated_source(id, found.lane->under.has_value())}});
+    if (kind != SnippetKind::cuda) values.emplace_back("loop", filled("loop.in", values));
   }
   const std::string_view file = !foreign                    ? file_of(kind)
                                 : kind == SnippetKind::cuda ? "foreign.cu.in"

@@ -9,7 +9,6 @@
 #include "fuzz/campaign/checked_summary.h"
 #include "reports/failure_cards.h"
 #include "reports/tables.h"
-#include "strata/groups.h"
 
 namespace graze::reports {
 namespace {

@@ -2,12 +2,10 @@
 // The parts of a report that describe single failures: a card for each kind, and a row for each signature.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "reports/counts.h"
 

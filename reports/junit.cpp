@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "analysis/signature.h"
 #include "core/simplify/simplicity.h"
 #include "core/text.h"
 #include "fuzz/campaign/result_files.h"
-#include "fuzz/files.h"
 #include "fuzz/minimise/kinds.h"
 #include "reports/counts.h"
 #include "reports/plain_figures.h"

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/text.h"
@@ -12,7 +11,6 @@
 #include "fuzz/minimise/kinds.h"
 #include "reports/cost_words.h"
 #include "reports/extremes.h"
-#include "reports/findings.h"
 #include "reports/svg.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"

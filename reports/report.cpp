@@ -4,12 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <set>
 
 #include "core/cannot.h"
-#include "core/error.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/recorded.h"

@@ -2,7 +2,6 @@
 // The exported functions of graze.wasm, for pairs of float32, and of graze_f64.wasm, for pairs of doubles. They read
 // and write the module's own buffers. graze.js calls them.
 #include <algorithm>
-#include <cstring>
 #include <vector>
 
 #include "analysis/blame.h"

@@ -2,8 +2,6 @@
 // Tests a JavaScript function with <graze/test.h>. test_function.js calls the exported function.
 #include <graze/test.h>
 
-#include <cstring>
-
 extern "C" {
 char* text();  // in module.cpp
 

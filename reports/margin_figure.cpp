@@ -20,11 +20,6 @@ constexpr int kSpan = 26;                   // on each side of 0, draws buckets 
 constexpr std::uint64_t kFewestPairs = 30;  // shares of fewer pairs are not drawn
 constexpr std::size_t kColours = 6;         // how many of kSvgColours are used
 
-struct Bar {
-  std::uint64_t pairs = 0;
-  std::map<std::string, std::uint64_t> wrong;
-};
-
 // The position of a bucket on the axis: small margins in the middle, -2^26 at the left end, +2^26 at the right end.
 int place(int bucket) {
   if (bucket == 0) return 0;
@@ -65,27 +60,27 @@ std::string axes() {
 constexpr std::size_t kInLegendRow = 5;
 
 std::string margin_figure(const Json& summary) {
-  std::map<int, Bar> by_place;
-  for (const auto& [stratum, row] : summary["strata"].items()) {
-    for (const auto& [bucket, counts] : row["margins"].items()) {
-      Bar& bar = by_place[place(buckets_by_name().at(bucket))];
-      bar.pairs += counts["pairs"].get<std::uint64_t>();
-      for (const auto& [lane, wrong] : counts["wrong"].items()) bar.wrong[lane] += wrong.get<std::uint64_t>();
-    }
+  const CampaignCounts counts = counts_of(summary);
+  std::map<int, WrongCounts> by_place;
+  for (const auto& [bucket, found] : counts.total.margins) {
+    WrongCounts& sum = by_place[place(bucket)];
+    sum.pairs += found.pairs;
+    sum.wrong.resize(counts.lanes.size());
+    for (std::size_t l = 0; l < sum.wrong.size(); ++l) sum.wrong[l] += found.wrong[l];
   }
 
   std::string svg = svg_begin("Share of wrong verdicts against the exact margin");
   svg += axes();
   std::size_t row = 0;
-  for (const auto& lane : summary["spec"]["lanes"]) {
-    const std::string id = lane;
+  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    const std::string& id = counts.lanes[l].id;
     if (!id.ends_with("/f32/cpu")) continue;
     const char* colour = kSvgColours[row % kColours];
     std::string points;
-    for (auto& [p, counts] : by_place) {
-      if (counts.pairs < kFewestPairs) continue;
+    for (const auto& [p, found] : by_place) {
+      if (found.pairs < kFewestPairs) continue;
       points += fmt::format("{:.1f},{:.1f} ", x_of(p),
-                            y_of(static_cast<double>(counts.wrong[id]) / static_cast<double>(counts.pairs)));
+                            y_of(static_cast<double>(found.wrong[l]) / static_cast<double>(found.pairs)));
     }
     svg += fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"2\" points=\"{}\"/>\n", colour, points);
     const double x = kLeft + 168.0 * static_cast<double>(row % kInLegendRow), y = row < kInLegendRow ? 36 : 52;

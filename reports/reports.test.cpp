@@ -12,12 +12,13 @@ namespace {
 
 nlohmann::ordered_json example() {
   return nlohmann::ordered_json::parse(R"({
-    "spec": {"lanes": ["moller_1997/f32/cpu", "moller_1997/f32/cpu-fma"]},
+    "spec": {"seed": 1, "pairs": 1234567, "lanes": ["moller_1997/f32/cpu", "moller_1997/f32/cpu-fma"]},
     "strata": {"uniform": {"pairs": 1234567, "intersects": 617283,
-      "lanes": {"moller_1997/f32/cpu": {"false_positive": 12, "false_negative": 1234, "declined": 0, "differs_from_cpu": 0},
+      "lanes": {"moller_1997/f32/cpu": {"false_positive": 12, "false_negative": 1234, "declined": 0, "differs_from_cpu": null},
                 "moller_1997/f32/cpu-fma": {"false_positive": 0, "false_negative": 0, "declined": 0, "differs_from_cpu": 1246}},
-      "margins": {"-2^3": {"pairs": 100, "wrong": {"moller_1997/f32/cpu": 50}}, "0": {"pairs": 10, "wrong": {}}}}},
-    "disagreements": 1246, "signatures": [{"key": "k", "count": 1246, "case": "c"}]})");
+      "margins": {"-2^3": {"pairs": 100, "wrong": {"moller_1997/f32/cpu": 50}, "differs_from_cpu": {}},
+                  "0": {"pairs": 10, "wrong": {}, "differs_from_cpu": {}}}}},
+    "complete": true, "disagreements": 1246, "signatures": [{"key": "k", "count": 1246, "case": "c"}]})");
 }
 
 TEST(Terminal, OneIsSingular) {

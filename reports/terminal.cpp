@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
-#include <optional>
 #include <ostream>
 #include <vector>
 
@@ -13,6 +13,7 @@
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/recorded.h"
 #include "fuzz/counts_json.h"
+#include "reports/counts.h"
 #include "reports/text_table.h"
 
 namespace graze::reports {
@@ -43,43 +44,36 @@ void print_strata(std::ostream& out, const Json& summary, const Screen& screen) 
   out << table.text(screen);
 }
 
-void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
-  const auto lanes = summary["spec"]["lanes"].get<std::vector<std::string>>();
-  std::vector<Counts> counts(lanes.size());
-  std::vector<std::optional<std::uint64_t>> differs(lanes.size());  // differences from cpu; nullopt if not compared
-  std::vector<std::optional<std::uint64_t>> stored(lanes.size());   // errors due to storing; nullopt for f64 lanes
-  for (const auto& [stratum, row] : summary["strata"].items()) {
-    for (std::size_t l = 0; l < lanes.size(); ++l) {
-      const Json& of = row["lanes"][lanes[l]];
-      counts[l] += fuzz::counts_of(of);
-      const Json& apart = of.at("differs_from_cpu");
-      if (!apart.is_null()) differs[l] = differs[l].value_or(0) + apart.get<std::uint64_t>();
-      if (of.contains("stored")) stored[l] = stored[l].value_or(0) + of["stored"].get<std::uint64_t>();
-    }
-  }
+void print_lanes(std::ostream& out, const Json& summary, const CampaignCounts& counts, const Screen& screen) {
+  const std::vector<analysis::LaneCounts>& total = counts.total.lanes;
+  const bool in_doubles =
+      std::any_of(counts.strata.begin(), counts.strata.end(), std::mem_fn(&StratumCounts::in_doubles));
+  // Whether errors due to storing are counted. An f64 lane has none.
+  const auto has_stored = [&](const ReportLane& lane) { return in_doubles && lane.name.scalar == name(Scalar::f32); };
   std::vector<Column> columns{{"lane, over all strata", Align::left}};
   std::vector<fuzz::CountField> fields;
   for (const fuzz::CountField& field : fuzz::kCountFields) {
     const auto has = [&](const Counts& lane) { return lane.*field.count > 0; };
-    if (field.foreign && std::none_of(counts.begin(), counts.end(), has)) continue;
+    if (field.foreign && std::none_of(total.begin(), total.end(), has)) continue;
     fields.push_back(field);
     std::string title = field.key;
     std::replace(title.begin(), title.end(), '_', ' ');
     columns.push_back({title});
   }
   columns.push_back({"differs from cpu"});
-  const bool any_stored = std::any_of(stored.begin(), stored.end(), [](const auto& count) { return bool(count); });
+  const bool any_stored = std::any_of(counts.lanes.begin(), counts.lanes.end(), has_stored);
   if (any_stored) columns.push_back({"wrong by storing"});
   TextTable table(columns);
-  for (std::size_t l = 0; l < lanes.size(); ++l) {
-    std::vector<Cell> cells{lanes[l]};
+  for (std::size_t l = 0; l < total.size(); ++l) {
+    const ReportLane& lane = counts.lanes[l];
+    std::vector<Cell> cells{lane.id};
     for (const fuzz::CountField& field : fields) {
       const bool known = !field.foreign || summary["strata"].empty() ||
-                         summary["strata"].front()["lanes"][lanes[l]].contains(field.key);
-      cells.push_back(known ? grouped(counts[l].*field.count) : "-");
+                         summary["strata"].front()["lanes"][lane.id].contains(field.key);
+      cells.push_back(known ? grouped(total[l].*field.count) : "-");
     }
-    cells.push_back(differs[l] ? grouped(*differs[l]) : "-");
-    if (any_stored) cells.push_back(stored[l] ? grouped(*stored[l]) : "-");
+    cells.push_back(lane.cpu ? grouped(total[l].differs_from_cpu) : "-");
+    if (any_stored) cells.push_back(has_stored(lane) ? grouped(total[l].stored) : "-");
     table.add(std::move(cells));
   }
   out << '\n' << table.text(screen);
@@ -123,12 +117,11 @@ std::string bare_percent(std::uint64_t part, std::uint64_t whole) {
 }
 
 void print_summary(std::ostream& out, const Json& summary, const Json& oracle, const Screen& screen) {
+  const CampaignCounts counts = counts_of(summary);
   print_strata(out, summary, screen);
-  print_lanes(out, summary, screen);
-  std::uint64_t pairs = 0;
-  for (const auto& [stratum, row] : summary["strata"].items()) pairs += row["pairs"].get<std::uint64_t>();
+  print_lanes(out, summary, counts, screen);
   const std::uint64_t disagreements = summary["disagreements"];
-  const std::string found = fmt::format("{}: some lane is wrong on {}, in {}.", counted(pairs, "pair"),
+  const std::string found = fmt::format("{}: some lane is wrong on {}, in {}.", counted(counts.total.pairs, "pair"),
                                         grouped(disagreements), counted(summary["signatures"].size(), "signature"));
   out << '\n'
       << bold(screen, found) << '\n'

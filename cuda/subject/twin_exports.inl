@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The last part of the source of a twin's shared library, after subjects/include/graze/subject.h and
 // cuda/twin/twin_ops*.h. It has the kernels that the generator writes, and the exported functions; see
-// cuda/twin/twin_library.h. The kernel is graze_subject_kernel, which wrapper.cpp appends to the user's source.
+// cuda/twin/twin_library.h. The kernel is graze_subject_kernel, which cuda_subject.cpp appends to the user's source.
 #include <cstddef>
 #include <iterator>
 #include <string_view>

@@ -16,6 +16,7 @@
 
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/exact_kernels.cuh"
+#include "cuda/lanes/kernels.cuh"
 #include "cuda/query/query_kernels.cuh"
 
 namespace graze::cuda {
@@ -23,6 +24,61 @@ namespace {
 
 constexpr std::uint64_t kFirstOfAny = 1 << 12, kFirstOfAll = 1 << 20, kFirstResident = 1 << 25, kGrowth = 8;
 constexpr std::uint64_t kMostResident = 1 << 27, kMostStreamed = 1 << 20, kMostOfLane = 1 << 20;
+
+// Sets the verdicts on the triangles marked in `not_finite` to declined.
+__global__ void __launch_bounds__(kThreads)
+    decline(std::uint32_t words, const std::uint32_t* not_finite, std::uint32_t* hits, std::uint32_t* declined) {
+  const std::uint32_t w = blockIdx.x * kThreads + threadIdx.x;
+  if (w >= words) return;
+  declined[w] |= not_finite[w];
+  hits[w] &= ~declined[w];
+}
+
+// Counts the bits of the first `words` words and adds the results to `counts`, which the caller initialises.
+__global__ void __launch_bounds__(kThreads)
+    count_bits(std::uint32_t words, const std::uint32_t* hits, const std::uint32_t* declined, QueryCounts* counts) {
+  unsigned found = 0, without = 0, first = 0xffffffffu;
+  for (std::uint32_t w = blockIdx.x * kThreads + threadIdx.x; w < words; w += gridDim.x * kThreads) {
+    found += static_cast<unsigned>(__popc(hits[w]));
+    without += static_cast<unsigned>(__popc(declined[w]));
+    if (hits[w]) first = min(first, w * 32 + static_cast<unsigned>(__ffs(static_cast<int>(hits[w]))) - 1);
+  }
+  for (int far = 16; far > 0; far /= 2) {
+    found += __shfl_xor_sync(0xffffffffu, found, far);
+    without += __shfl_xor_sync(0xffffffffu, without, far);
+    first = min(first, __shfl_xor_sync(0xffffffffu, first, far));
+  }
+  if (threadIdx.x % 32 != 0) return;
+  using Long = unsigned long long;
+  if (found) atomicAdd(reinterpret_cast<Long*>(&counts->hits), Long{found});
+  if (without) atomicAdd(reinterpret_cast<Long*>(&counts->declined), Long{without});
+  if (found) atomicMin(reinterpret_cast<Long*>(&counts->first), Long{first});
+}
+
+// Finds the earliest hit in any row, and subtracts the declined triangles after it from the first row's count of
+// declined triangles.
+__global__ void __launch_bounds__(kThreads)
+    forget_behind(std::uint32_t words, const std::uint32_t* declined, QueryCounts* counts, std::uint32_t rows) {
+  std::uint64_t first = ~std::uint64_t{0};
+  for (std::uint32_t r = 0; r < rows; ++r) first = min(first, counts[r].first);
+  const std::uint64_t w = blockIdx.x * kThreads + threadIdx.x;
+  if (w >= words || w < first / 32) return;
+  const std::uint32_t behind = w > first / 32 ? 0xffffffffu : ~((1u << first % 32) - 1);
+  const int forgotten = __popc(declined[w] & behind);
+  if (forgotten != 0)
+    atomicAdd(reinterpret_cast<unsigned long long*>(&counts->declined), static_cast<unsigned long long>(-forgotten));
+}
+
+// Writes a byte for each triangle: 1 for a hit, 2 for declined, else 0.
+__global__ void __launch_bounds__(kThreads)
+    write_bytes(std::uint32_t count, const std::uint32_t* hits, const std::uint32_t* declined, unsigned char* bytes) {
+  const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
+  if (i >= count) return;
+  const std::uint32_t hit = hits[i / 32] >> i % 32 & 1, no_answer = declined[i / 32] >> i % 32 & 1;
+  bytes[i] = static_cast<unsigned char>(hit | no_answer << 1);
+}
+
+std::uint32_t blocks_for(std::uint32_t things) { return (things + kThreads - 1) / kThreads; }
 
 // The outputs of a chunk's kernels.
 struct Verdicts {
@@ -150,6 +206,7 @@ class Run {
       chunk.array.count = count;
     }
     const std::size_t words = row_words(count), rows = references_.size();
+    const std::uint32_t words_in_use = (count + 31) / 32;
     std::uint32_t *hits = at.hits.at_least(words * rows), *declined = at.declined.at_least(words * rows);
     QueryCounts* found = at.found.at_least(rows);
     check(cudaMemsetAsync(found, 0, rows * sizeof *found, stream));
@@ -157,10 +214,14 @@ class Run {
     for (std::size_t r = 0; r < rows; ++r) {
       decide(at, r, chunk, hits + r * words, declined + r * words, stream);
       check(cudaMemsetAsync(&found[r].first, 0xff, sizeof found[r].first, stream));
-      launch_count(count, hits + r * words, declined + r * words, found + r, stream);
+      count_bits<<<std::min(blocks_for(words_in_use), 512u), kThreads, 0, stream>>>(words_in_use, hits + r * words,
+                                                                                    declined + r * words, found + r);
       put(range, r, hits + r * words, declined + r * words, stream);
     }
-    if (question_.any) launch_forget_behind(count, declined, found, static_cast<std::uint32_t>(rows), stream);
+    if (question_.any)
+      forget_behind<<<blocks_for(words_in_use), kThreads, 0, stream>>>(words_in_use, declined, found,
+                                                                       static_cast<std::uint32_t>(rows));
+    check(cudaGetLastError());
     check(cudaEventRecord(slot.stop, stream));
     if (work_.wants_bits()) {
       fetch(slot.hits, hits, words * rows, stream);
@@ -191,7 +252,7 @@ class Run {
     std::uint32_t* not_finite = at.not_finite.at_least(words);
     launch_pair_up(reference, chunk, columns, not_finite, stream);
     launch_lane(question_.lane, at.exact, {columns, words * 32, chunk.count}, hits, declined, stream);
-    launch_decline(words, not_finite, hits, declined, stream);
+    decline<<<blocks_for(words), kThreads, 0, stream>>>(words, not_finite, hits, declined);
   }
 
   const double* doubles(std::size_t r) const { return static_cast<const double*>(question_.references) + 9 * r; }
@@ -201,7 +262,8 @@ class Run {
            cudaStream_t stream) {
     const auto count = static_cast<std::uint32_t>(range.count);
     if (question_.bytes)
-      launch_bytes(count, hits, declined, question_.bytes + r * question_.triangles + range.first, stream);
+      write_bytes<<<blocks_for(count), kThreads, 0, stream>>>(count, hits, declined,
+                                                              question_.bytes + r * question_.triangles + range.first);
     if (question_.bits)
       check(cudaMemcpyAsync(question_.bits + r * ((question_.triangles + 7) / 8) + range.first / 8, hits,
                             (range.count + 7) / 8, cudaMemcpyDeviceToDevice, stream));

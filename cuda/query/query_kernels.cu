@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A query's steps after the slabs: pairs on small grids, the filter in doubles, the exact decision, and counts. Other
-// kernels in this file write the pairs for other lanes.
+// A query's steps after the slabs: pairs on small grids, the filter in doubles, and the exact decision. Another kernel
+// in this file writes the pairs for other lanes.
 #include "cuda/query/query_kernels.cuh"
 
 #include <algorithm>
 
 #include "cuda/lanes/exact_steps.cuh"
+#include "cuda/lanes/kernels.cuh"
 
 namespace graze::cuda {
 namespace {
@@ -110,56 +111,6 @@ __global__ void __launch_bounds__(kThreads)
   if (threadIdx.x % 32 == 0) not_finite[i / 32] = word;
 }
 
-__global__ void __launch_bounds__(kThreads)
-    decline(std::uint32_t words, const std::uint32_t* not_finite, std::uint32_t* hits, std::uint32_t* declined) {
-  const std::uint32_t w = blockIdx.x * kThreads + threadIdx.x;
-  if (w >= words) return;
-  declined[w] |= not_finite[w];
-  hits[w] &= ~declined[w];
-}
-
-__global__ void __launch_bounds__(kThreads)
-    count_bits(std::uint32_t words, const std::uint32_t* hits, const std::uint32_t* declined, QueryCounts* counts) {
-  unsigned found = 0, without = 0, first = 0xffffffffu;
-  for (std::uint32_t w = blockIdx.x * kThreads + threadIdx.x; w < words; w += gridDim.x * kThreads) {
-    found += static_cast<unsigned>(__popc(hits[w]));
-    without += static_cast<unsigned>(__popc(declined[w]));
-    if (hits[w]) first = min(first, w * 32 + static_cast<unsigned>(__ffs(static_cast<int>(hits[w]))) - 1);
-  }
-  for (int far = 16; far > 0; far /= 2) {
-    found += __shfl_xor_sync(0xffffffffu, found, far);
-    without += __shfl_xor_sync(0xffffffffu, without, far);
-    first = min(first, __shfl_xor_sync(0xffffffffu, first, far));
-  }
-  if (threadIdx.x % 32 != 0) return;
-  using Long = unsigned long long;
-  if (found) atomicAdd(reinterpret_cast<Long*>(&counts->hits), Long{found});
-  if (without) atomicAdd(reinterpret_cast<Long*>(&counts->declined), Long{without});
-  if (found) atomicMin(reinterpret_cast<Long*>(&counts->first), Long{first});
-}
-
-__global__ void __launch_bounds__(kThreads)
-    forget_behind(std::uint32_t words, const std::uint32_t* declined, QueryCounts* counts, std::uint32_t rows) {
-  std::uint64_t first = ~std::uint64_t{0};
-  for (std::uint32_t r = 0; r < rows; ++r) first = min(first, counts[r].first);
-  const std::uint64_t w = blockIdx.x * kThreads + threadIdx.x;
-  if (w >= words || w < first / 32) return;
-  const std::uint32_t behind = w > first / 32 ? 0xffffffffu : ~((1u << first % 32) - 1);
-  const int forgotten = __popc(declined[w] & behind);
-  if (forgotten != 0)
-    atomicAdd(reinterpret_cast<unsigned long long*>(&counts->declined), static_cast<unsigned long long>(-forgotten));
-}
-
-__global__ void __launch_bounds__(kThreads)
-    write_bytes(std::uint32_t count, const std::uint32_t* hits, const std::uint32_t* declined, unsigned char* bytes) {
-  const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
-  if (i >= count) return;
-  const std::uint32_t hit = hits[i / 32] >> i % 32 & 1, no_answer = declined[i / 32] >> i % 32 & 1;
-  bytes[i] = static_cast<unsigned char>(hit | no_answer << 1);
-}
-
-std::uint32_t blocks_for(std::uint32_t things) { return (things + kThreads - 1) / kThreads; }
-
 // Each list reuses the memory of the list two places before it, which is no longer needed.
 struct QueryLists {
   PairList left[kQueryLists];
@@ -178,8 +129,8 @@ void launch_exact_query(const exact::PreparedTriangle& seen, const double* refer
   const auto [left] = QueryLists(lists, counts, chunk.count, stream);
   ArrayPairs pairs{{}, chunk.array, {}, chunk.first};
   std::copy_n(reference, 9, pairs.reference);
-  decide_doubles_by_slabs<<<blocks_for(chunk.count), kThreads, 0, stream>>>(seen, pairs, chunk.count, left[0], hits,
-                                                                            declined);
+  decide_doubles_by_slabs<<<thread_blocks(chunk), kThreads, 0, stream>>>(seen, pairs, chunk.count, left[0], hits,
+                                                                         declined);
   filter_doubles<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], hits);
   static_assert(1 + kDoubleLists <= kQueryLists);
   launch_double_steps(pairs, left + 1, hits, nullptr, stream);
@@ -198,34 +149,8 @@ void launch_exact_query(const exact::PreparedTriangle& reference, const QueryChu
 
 void launch_pair_up(const exact::PreparedTriangle& reference, const QueryChunk& chunk, float* columns,
                     std::uint32_t* not_finite, cudaStream_t stream) {
-  pair_up<<<blocks_for(chunk.count), kThreads, 0, stream>>>({reference, chunk}, row_words(chunk.count) * 32, columns,
-                                                            not_finite);
-  check(cudaGetLastError());
-}
-
-void launch_decline(std::uint32_t words, const std::uint32_t* not_finite, std::uint32_t* hits, std::uint32_t* declined,
-                    cudaStream_t stream) {
-  decline<<<blocks_for(words), kThreads, 0, stream>>>(words, not_finite, hits, declined);
-  check(cudaGetLastError());
-}
-
-void launch_count(std::uint32_t count, const std::uint32_t* hits, const std::uint32_t* declined, QueryCounts* counts,
-                  cudaStream_t stream) {
-  const std::uint32_t words = (count + 31) / 32;
-  count_bits<<<std::min(blocks_for(words), 512u), kThreads, 0, stream>>>(words, hits, declined, counts);
-  check(cudaGetLastError());
-}
-
-void launch_forget_behind(std::uint32_t count, const std::uint32_t* declined, QueryCounts* counts, std::uint32_t rows,
-                          cudaStream_t stream) {
-  const std::uint32_t words = (count + 31) / 32;
-  forget_behind<<<blocks_for(words), kThreads, 0, stream>>>(words, declined, counts, rows);
-  check(cudaGetLastError());
-}
-
-void launch_bytes(std::uint32_t count, const std::uint32_t* hits, const std::uint32_t* declined, unsigned char* bytes,
-                  cudaStream_t stream) {
-  write_bytes<<<blocks_for(count), kThreads, 0, stream>>>(count, hits, declined, bytes);
+  pair_up<<<thread_blocks(chunk), kThreads, 0, stream>>>({reference, chunk}, row_words(chunk.count) * 32, columns,
+                                                         not_finite);
   check(cudaGetLastError());
 }
 

@@ -45,21 +45,4 @@ void launch_exact_query(const exact::PreparedTriangle& seen, const double* refer
 void launch_pair_up(const exact::PreparedTriangle& reference, const QueryChunk& chunk, float* columns,
                     std::uint32_t* not_finite, cudaStream_t stream);
 
-// Sets the verdicts on the marked triangles to declined.
-void launch_decline(std::uint32_t words, const std::uint32_t* not_finite, std::uint32_t* hits, std::uint32_t* declined,
-                    cudaStream_t stream);
-
-// Counts the bits of the first (count + 31) / 32 words and adds the results to `counts`, which the caller initialises.
-void launch_count(std::uint32_t count, const std::uint32_t* hits, const std::uint32_t* declined, QueryCounts* counts,
-                  cudaStream_t stream);
-
-// Finds the earliest hit in any row, and subtracts the declined triangles after it from the first row's count of
-// declined triangles.
-void launch_forget_behind(std::uint32_t count, const std::uint32_t* declined, QueryCounts* counts, std::uint32_t rows,
-                          cudaStream_t stream);
-
-// Writes a byte for each triangle: 1 for a hit, 2 for declined, else 0.
-void launch_bytes(std::uint32_t count, const std::uint32_t* hits, const std::uint32_t* declined, unsigned char* bytes,
-                  cudaStream_t stream);
-
 }  // namespace graze::cuda

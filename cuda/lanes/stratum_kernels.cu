@@ -23,27 +23,6 @@ void draw_on_cores(const Draw& pair, std::uint64_t first, std::uint32_t count, s
   });
 }
 
-__device__ void note(Differences* differences, std::uint64_t place) {
-  const unsigned long long n = atomicAdd(&differences->count, 1ull);
-  if (n < kExamples) differences->places[n] = place;
-}
-
-__global__ void compare_bits(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t count, std::uint64_t first,
-                             Differences* differences) {
-  const std::uint32_t word = blockIdx.x * blockDim.x + threadIdx.x;
-  if (word * 32 >= count) return;
-  for (std::uint32_t differ = a[word] ^ b[word]; differ != 0; differ &= differ - 1) {
-    const std::uint32_t place = word * 32 + static_cast<std::uint32_t>(__ffs(static_cast<int>(differ)) - 1);
-    if (place < count) note(differences, first + place);
-  }
-}
-
-__global__ void compare_hashes(const std::uint64_t* a, const std::uint64_t* b, std::uint32_t count, std::uint64_t first,
-                               Differences* differences) {
-  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
-  if (i < count && a[i] != b[i]) note(differences, first + i);
-}
-
 __global__ void store_in_float32(const double* from, std::size_t count, float* to) {
   const std::size_t i = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
   if (i < count) to[i] = static_cast<float>(from[i]);
@@ -88,16 +67,6 @@ void Drawing::draw(const strata::PairSource& source, std::uint64_t first, std::u
     store_in_float32<<<drawing_blocks(static_cast<std::uint32_t>(numbers)), kDrawingThreads, 0, stream>>>(to, numbers,
                                                                                                           stored);
   check(cudaGetLastError());
-}
-
-void launch_compare_bits(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t count, std::uint64_t first,
-                         Differences* differences, cudaStream_t stream) {
-  compare_bits<<<drawing_blocks((count + 31) / 32), kDrawingThreads, 0, stream>>>(a, b, count, first, differences);
-}
-
-void launch_compare_hashes(const std::uint64_t* a, const std::uint64_t* b, std::uint32_t count, std::uint64_t first,
-                           Differences* differences, cudaStream_t stream) {
-  compare_hashes<<<drawing_blocks(count), kDrawingThreads, 0, stream>>>(a, b, count, first, differences);
 }
 
 }  // namespace graze::cuda

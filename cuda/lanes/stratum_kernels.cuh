@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kernels that draw blocks of pairs from a stratum, with or without a scene, and kernels that count the differences
-// between two runs. Device code only.
+// Kernels that draw blocks of pairs from a stratum, with or without a scene. Device code only.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -12,14 +11,6 @@
 #include "strata/pair_source.h"
 
 namespace graze::cuda {
-
-inline constexpr std::uint32_t kExamples = 8;
-
-// The number of differences, and the indices of up to kExamples of them, in no particular order.
-struct Differences {
-  unsigned long long count;
-  std::uint64_t places[kExamples];
-};
 
 // Draws pairs [first, first + count) of the stratum.
 void launch_generate(float* coordinates, std::uint32_t count, std::uint64_t seed, int stratum, std::uint64_t first,
@@ -44,11 +35,5 @@ class Drawing {
   std::vector<float> brought_;
   std::vector<double> brought_doubles_;
 };
-
-// Counts the differences between the first `count` bits of a and b. Bit i % 32 of word i / 32 is for index first + i.
-void launch_compare_bits(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t count, std::uint64_t first,
-                         Differences* differences, cudaStream_t stream);
-void launch_compare_hashes(const std::uint64_t* a, const std::uint64_t* b, std::uint32_t count, std::uint64_t first,
-                           Differences* differences, cudaStream_t stream);
 
 }  // namespace graze::cuda

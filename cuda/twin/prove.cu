@@ -24,6 +24,36 @@ namespace {
 
 constexpr std::uint32_t kBlockPairs = 1u << 23;  // pairs in one block: 604 MB of coordinates in float32
 
+// The number of differences, and the indices of up to kExamples of them, in no particular order.
+struct Differences {
+  unsigned long long count;
+  std::uint64_t places[kExamples];
+};
+
+__device__ void note(Differences* differences, std::uint64_t place) {
+  const unsigned long long n = atomicAdd(&differences->count, 1ull);
+  if (n < kExamples) differences->places[n] = place;
+}
+
+// Counts the differences between the first `count` bits of a and b. Bit i % 32 of word i / 32 is for index first + i.
+__global__ void compare_bits(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t count, std::uint64_t first,
+                             Differences* differences) {
+  const std::uint32_t word = blockIdx.x * blockDim.x + threadIdx.x;
+  if (word * 32 >= count) return;
+  for (std::uint32_t differ = a[word] ^ b[word]; differ != 0; differ &= differ - 1) {
+    const std::uint32_t place = word * 32 + static_cast<std::uint32_t>(__ffs(static_cast<int>(differ)) - 1);
+    if (place < count) note(differences, first + place);
+  }
+}
+
+__global__ void compare_hashes(const std::uint64_t* a, const std::uint64_t* b, std::uint32_t count, std::uint64_t first,
+                               Differences* differences) {
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < count && a[i] != b[i]) note(differences, first + i);
+}
+
+std::uint32_t blocks_for(std::uint32_t threads) { return (threads + kThreads - 1) / kThreads; }
+
 // The explicit PTX, assembled by the driver for this device.
 class ExplicitKernels {
  public:
@@ -40,8 +70,8 @@ class ExplicitKernels {
     cudaKernel_t kernel;
     check(cudaLibraryGetKernel(&kernel, library_, symbol));
     void* pointers[] = {&arguments...};
-    check(cudaLaunchKernel(reinterpret_cast<const void*>(kernel), dim3((threads + kThreads - 1) / kThreads),
-                           dim3(kThreads), pointers, 0, nullptr));
+    check(cudaLaunchKernel(reinterpret_cast<const void*>(kernel), dim3(blocks_for(threads)), dim3(kThreads), pointers,
+                           0, nullptr));
   }
 
  private:
@@ -171,9 +201,13 @@ class Prover {
   void compare_on_device(StratumProof& row, std::uint64_t first, std::uint32_t n) {
     Differences* found = differences_.at_least(3);
     check(cudaMemset(found, 0, 3 * sizeof(Differences)));
-    launch_compare_bits(run_.intersects[0].at_least(0), run_.intersects[1].at_least(0), n, first, found, nullptr);
-    launch_compare_bits(run_.declined[0].at_least(0), run_.declined[1].at_least(0), n, first, found + 1, nullptr);
-    launch_compare_hashes(run_.hashes[0].at_least(0), run_.hashes[1].at_least(0), n, first, found + 2, nullptr);
+    const std::uint32_t blocks_of_words = blocks_for((n + 31) / 32);
+    compare_bits<<<blocks_of_words, kThreads>>>(run_.intersects[0].at_least(0), run_.intersects[1].at_least(0), n,
+                                                first, found);
+    compare_bits<<<blocks_of_words, kThreads>>>(run_.declined[0].at_least(0), run_.declined[1].at_least(0), n, first,
+                                                found + 1);
+    compare_hashes<<<blocks_for(n), kThreads>>>(run_.hashes[0].at_least(0), run_.hashes[1].at_least(0), n, first,
+                                                found + 2);
     check(cudaGetLastError());
     Differences host[3];
     check(cudaMemcpy(host, found, sizeof host, cudaMemcpyDeviceToHost));

@@ -22,6 +22,8 @@ struct ProofOptions {
   std::function<void(const std::string& line)> progress = nullptr;  // called after each stratum
 };
 
+inline constexpr std::uint32_t kExamples = 8;  // the most examples of a stratum
+
 // The numbers of compared pairs, and of differences in verdicts and in trace hashes.
 struct StratumProof {
   std::string stratum;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cuda/twin/explicit_ptx.h"
-
 #include <span>
 #include <stdexcept>
+
+#include "cuda/twin/prove.h"
 
 namespace graze::cuda {
 namespace {

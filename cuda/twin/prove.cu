@@ -15,7 +15,6 @@
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
-#include "cuda/twin/explicit_ptx.h"
 #include "cuda/twin/twin_table.h"
 #include "strata/pair_source.h"
 

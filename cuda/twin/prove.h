@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "core/variants.h"
+
 namespace graze::cuda {
 
 struct ProofOptions {
@@ -55,6 +57,10 @@ struct ProofRecord {
 
 // Throws: std::runtime_error without a device, or on any CUDA error.
 ProofRecord prove_twin(const ProofOptions& options);
+
+// The PTX of the variant's kernels with every contraction written out, as text for the driver to assemble. wrong_rule:
+// with wrong contractions.   Throws: std::invalid_argument for a variant without a twin.
+std::string explicit_ptx(Variant variant, bool wrong_rule);
 
 // The record, in the format of the files in cuda/proofs.
 nlohmann::ordered_json to_json(const ProofRecord& record);

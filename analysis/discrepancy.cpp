@@ -77,7 +77,7 @@ void record(const Lane& lane, std::span<const Pair> pairs, const Records& to) {
 // Requires: a lane in double.
 void record(const Lane& lane, std::span<const DoublePair> pairs, const Records& to) {
   const RecordFunction<DoublePair> own = host_record_of_doubles(lane);
-  (own ? own : cuda::twin_record_of_doubles(lane))(pairs.data(), pairs.size(), to);
+  (own ? own : cuda::record_row(lane).doubles.record)(pairs.data(), pairs.size(), to);
 }
 
 // The records of one lane on a block of pairs.
@@ -209,7 +209,7 @@ DiscrepancyCounts& DiscrepancyCounts::operator+=(const DiscrepancyCounts& other)
 
 RecordBlock record_on_host(const Lane& lane) {
   const RecordBlock own = host_record(lane);
-  return own ? own : cuda::twin_record(lane);
+  return own ? own : cuda::record_row(lane).record;
 }
 
 std::string why_not_compared(const Lane& l, const Lane& r) {

@@ -606,6 +606,7 @@ TEST(Discrepancy, OriginsFindTheLineThatWasPlanted) {
   const std::vector<Question>& questions = questions_of(of.algorithm);
   std::vector<std::uint64_t> values(found.lines.size());
   std::uint64_t fixed = 0, starts = 0, grown = 0;
+  const auto fusing = cuda::record_row(of).record_fusing;
   for (std::size_t l = 0; l < found.lines.size(); ++l) {
     for (const strata::PairSource& source : sources) {
       for (std::uint64_t i = 0; i < 1000; ++i) {
@@ -613,8 +614,8 @@ TEST(Discrepancy, OriginsFindTheLineThatWasPlanted) {
         const std::vector<std::uint64_t> none(found.lines[l].mask.size());
         std::vector<float> rounded(2 * questions.size()), planted = rounded;
         RecordedPath path, planted_path;
-        cuda::record_fusing(of, {&pair, 1}, {rounded.data(), 1, &path}, none);
-        cuda::record_fusing(of, {&pair, 1}, {planted.data(), 1, &planted_path}, found.lines[l].mask);
+        fusing(&pair, 1, {rounded.data(), 1, &path}, none.data());
+        fusing(&pair, 1, {planted.data(), 1, &planted_path}, found.lines[l].mask.data());
         for (std::size_t q = 0; q < questions.size(); ++q) {
           if (!have_both(path, planted_path, static_cast<int>(q), questions[q].site)) continue;
           for (std::size_t v = 0; v < questions[q].of.size(); ++v)

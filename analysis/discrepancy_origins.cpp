@@ -36,7 +36,8 @@ void add_lines(Sites sites, Mask mask, std::vector<FusedLine>& lines) {
 
 // The fused lines of the kernels for the sources' coordinate types.
 std::vector<FusedLine> lines_of(const Lane& lane, Sources sources) {
-  const Sites of_floats = cuda::record_sites(lane), of_doubles = cuda::record_sites_of_doubles(lane);
+  const cuda::TwinRow& row = cuda::record_row(lane);
+  const Sites of_floats = row.sites, of_doubles = row.doubles.sites;
   std::vector<FusedLine> lines;
   if (!std::all_of(sources.begin(), sources.end(), std::mem_fn(&strata::PairSource::in_doubles)))
     add_lines(of_floats, &FusedLine::mask, lines);
@@ -55,7 +56,13 @@ class FusedRun {
   template <class Coordinate>
   FusedRun(const Lane& lane, std::span<const BasicPair<Coordinate>> pairs, std::span<const std::uint64_t> mask)
       : values_(2 * questions_of(lane.algorithm).size() * pairs.size()), paths_(pairs.size()) {
-    cuda::record_fusing(lane, pairs, {values_.data(), pairs.size(), paths_.data()}, mask);
+    const cuda::TwinRow& row = cuda::record_row(lane);
+    const Records to{values_.data(), pairs.size(), paths_.data()};
+    if constexpr (std::is_same_v<Coordinate, float>) {
+      row.record_fusing(pairs.data(), pairs.size(), to, mask.data());
+    } else {
+      row.doubles.record_fusing(pairs.data(), pairs.size(), to, mask.data());
+    }
   }
   const RecordedPath& path(std::size_t i) const { return paths_[i]; }
   Verdict verdict(std::size_t i) const { return recorded_verdict(paths_[i].path); }
@@ -174,7 +181,7 @@ void add(Origins& to, const Origins& some, const Simpler& simpler) {
 
 }  // namespace
 
-bool has_origins(const Lane& lane) { return !cuda::record_sites(lane).empty(); }
+bool has_origins(const Lane& lane) { return !cuda::record_row(lane).sites.empty(); }
 
 Origins origins(const Lane& lane, const std::vector<strata::PairSource>& sources, std::uint64_t pairs, int threads,
                 const Simpler& simpler) {

@@ -19,7 +19,7 @@ namespace {
 std::vector<const Lane*> lanes_here() {
   std::vector<const Lane*> result;
   for (const Lane& lane : published_lanes()) {
-    if (lane.is_cuda() ? cuda::twin_block(lane) != nullptr : runs_on_this_cpu(lane)) result.push_back(&lane);
+    if (lane.is_cuda() ? cuda::twin_row(lane).decide != nullptr : runs_on_this_cpu(lane)) result.push_back(&lane);
   }
   return result;
 }

@@ -35,12 +35,12 @@ Trace<double> run_in(int algorithm, const DoublePair& pair, Contraction rule, co
 // The evidence that this run of a contracted lane matches the lane's own.
 Evidence evidence(const Lane& lane, const AnyPair& pair, const Trace<double>& run) {
   if (run.verdict != decide_lane(lane, pair)) return Evidence::none;
-  if (!cuda::twin_trace(lane)) return Evidence::verdict;
+  if (!cuda::twin_row(lane).trace) return Evidence::verdict;
   std::uint64_t hash = 0;
   if (pair.floats) {
-    cuda::twin_trace(lane)(&*pair.floats, 1, &hash);
+    cuda::twin_row(lane).trace(&*pair.floats, 1, &hash);
   } else {
-    cuda::twin_trace_of_doubles(lane)(&pair.doubles, 1, &hash);
+    cuda::twin_row(lane).doubles.trace(&pair.doubles, 1, &hash);
   }
   return hash == (lane.scalar == Scalar::f32 ? trace_hash<float>(run) : trace_hash<double>(run)) ? Evidence::hash
                                                                                                  : Evidence::verdict;

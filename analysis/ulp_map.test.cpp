@@ -19,7 +19,7 @@ namespace {
 std::vector<const Lane*> lanes_of(std::string_view algorithm) {
   std::vector<const Lane*> result;
   for (const Lane& lane : published_lanes()) {
-    const bool here = lane.is_cuda() ? cuda::twin_block(lane) != nullptr : runs_on_this_cpu(lane);
+    const bool here = lane.is_cuda() ? cuda::twin_row(lane).decide != nullptr : runs_on_this_cpu(lane);
     if (here && lane.info->id == algorithm) result.push_back(&lane);
   }
   return result;

@@ -43,9 +43,9 @@ inline std::uint64_t trace_of(const Lane& lane, const AnyPair& pair) {
   std::uint64_t hash = 0;
   const AnyPair seen = analysis::seen_by(lane, pair);
   if (seen.floats) {
-    cuda::twin_trace(lane)(&*seen.floats, 1, &hash);
+    cuda::twin_row(lane).trace(&*seen.floats, 1, &hash);
   } else {
-    cuda::twin_trace_of_doubles(lane)(&seen.doubles, 1, &hash);
+    cuda::twin_row(lane).doubles.trace(&seen.doubles, 1, &hash);
   }
   return hash;
 }

@@ -9,7 +9,6 @@
 #include "backends/backends.h"
 #include "core/lanes/host_blocks.h"
 #include "cuda/twin/twin.h"
-#include "cuda/twin/twin_table.h"
 
 // wasi-libc's fmaf is wrong if the result is subnormal and halfway between two numbers. Here the product is exact in
 // double, and the sum is rounded to odd (Boldo and Melquiond 2008). The sum's last bit shows whether the sum was

@@ -158,7 +158,7 @@ GRAZE_EXPORT(decide_truth) void decide_truth(int count) {
 // Writes the lane's trace hashes (cuda/lanes/trace.h) of the pairs.   Returns: false if the lane has none.
 GRAZE_EXPORT(trace) int trace(int lane, int count) {
   const Lane& of = *deciders()[lane].lane;
-  if (!cuda::twin_trace(of)) return false;
+  if (!cuda::twin_row(of).trace) return false;
   for (int i = 0; i < count; ++i) hashes_out[i] = trace_of(of, pairs_in[i]);
   return true;
 }

@@ -101,7 +101,7 @@ void print_block(const std::string& of, std::uint64_t block, const std::vector<O
     if (!decide || lane.variant == Variant::cpu_fma || lane.variant == Variant::cpu_fast) continue;
     if (sizeof(OwnPair) == sizeof(Pair) && lane.exact && lane.scalar == Scalar::f64) continue;  // see wasm/module.cpp
     print(lane.id.c_str(), of.c_str(), block, verdicts(lane, decide, pairs));
-    if (cuda::twin_trace(lane)) {
+    if (cuda::twin_row(lane).trace) {
       Hash hash;
       for (const OwnPair& pair : pairs) hash.add_value(wasm::trace_of(lane, pair));
       print(("trace:" + lane.id).c_str(), of.c_str(), block, hash);

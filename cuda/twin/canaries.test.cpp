@@ -32,7 +32,7 @@ const Lane& lane_of(const corpus::Entry& canary, Variant variant) {
 }
 
 Verdict twin_says(const corpus::Entry& canary, Variant variant) {
-  return decide_one(twin_block(lane_of(canary, variant)), canary.pair);
+  return decide_one(twin_row(lane_of(canary, variant)).decide, canary.pair);
 }
 
 std::vector<corpus::Entry> canaries(const std::string& kind) {

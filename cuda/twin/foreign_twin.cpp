@@ -6,7 +6,6 @@
 
 #include "cuda/twin/twin.h"
 #include "cuda/twin/twin_library.h"
-#include "cuda/twin/twin_table.h"
 
 namespace graze::cuda {
 namespace {

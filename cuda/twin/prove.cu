@@ -15,7 +15,7 @@
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
-#include "cuda/twin/twin_table.h"
+#include "cuda/twin/twin.h"
 #include "strata/pair_source.h"
 
 namespace graze::cuda {

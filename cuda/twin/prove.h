@@ -36,7 +36,7 @@ struct StratumProof {
 
 struct LaneProof {
   std::string lane;
-  std::string hash, trace_hash;  // hashes of the two kernels; see TwinFunctions in twin_table.h
+  std::string hash, trace_hash;  // hashes of the two kernels; see TwinFunctions in twin.h
   std::vector<StratumProof> strata;
 
   std::uint64_t pairs() const;

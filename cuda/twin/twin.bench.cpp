@@ -35,7 +35,7 @@ const bool kRegistered = [] {
     const Lane* cpu = nullptr;
     for (const Lane& lane : lanes()) {
       if (lane.variant == Variant::cpu) cpu = &lane;
-      const DecideBlock decide = lane.is_cuda()                 ? twin_block(lane)
+      const DecideBlock decide = lane.is_cuda()                 ? twin_row(lane).decide
                                  : lane.variant == Variant::cpu ? lane.decide
                                                                 : nullptr;
       if (!decide) continue;

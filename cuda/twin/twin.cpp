@@ -101,7 +101,11 @@ const TwinRow& twin_row(const Lane& lane) {
   return table && lane.algorithm >= 0 && !lane.under ? row_of(*table, lane) : kNone;
 }
 
-DecideBlock::Function twin_block(const Lane& lane) { return twin_row(lane).decide; }
+const TwinRow& record_row(const Lane& lane) {
+  static const TwinRow kNone;
+  const TwinTable* table = kTables[static_cast<int>(lane.variant)].records;
+  return table && lane.algorithm >= 0 && !lane.under ? row_of(*table, lane) : kNone;
+}
 
 DecideBlock block_on_host(const Lane& lane) {
   if (lane.decide) return lane.decide;
@@ -112,34 +116,7 @@ DecideBlock block_on_host(const Lane& lane) {
   return on_cpu ? on_cpu->decide : nullptr;
 }
 
-namespace {
-
-// The row of the recording twin; it has no functions if there is no such twin.
-const TwinRow& record_row(const Lane& lane) {
-  static const TwinRow kNone;
-  const TwinTable* table = kTables[static_cast<int>(lane.variant)].records;
-  return table && lane.algorithm >= 0 && !lane.under ? row_of(*table, lane) : kNone;
-}
-
-}  // namespace
-
-RecordBlock twin_record(const Lane& lane) { return record_row(lane).record; }
-RecordFunction<DoublePair> twin_record_of_doubles(const Lane& lane) { return record_row(lane).doubles.record; }
-std::span<const ContractionSite> record_sites(const Lane& lane) { return record_row(lane).sites; }
-std::span<const ContractionSite> record_sites_of_doubles(const Lane& lane) { return record_row(lane).doubles.sites; }
-void record_fusing(const Lane& lane, std::span<const Pair> pairs, const Records& to,
-                   std::span<const std::uint64_t> fused) {
-  record_row(lane).record_fusing(pairs.data(), pairs.size(), to, fused.data());
-}
-void record_fusing(const Lane& lane, std::span<const DoublePair> pairs, const Records& to,
-                   std::span<const std::uint64_t> fused) {
-  record_row(lane).doubles.record_fusing(pairs.data(), pairs.size(), to, fused.data());
-}
-
 bool has_policy_twins() { return kHasPolicyTwins; }
-
-TraceBlock twin_trace(const Lane& lane) { return twin_row(lane).trace; }
-TraceFunction<DoublePair> twin_trace_of_doubles(const Lane& lane) { return twin_row(lane).doubles.trace; }
 
 std::string evidence(const TwinProof& proof) {
   const auto count = [](double pairs) {

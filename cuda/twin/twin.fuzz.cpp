@@ -13,8 +13,8 @@ const RegisterFuzzTarget kTwin("twin", [](std::string_view bytes) {
   const Pair pair = pair_of(bytes);
   std::size_t compared = 0;
   for (const Lane& lane : lanes()) {
-    if (lane.variant != Variant::cuda_nofma || !twin_block(lane)) continue;
-    const Verdict twin = decide_one(twin_block(lane), pair);
+    if (lane.variant != Variant::cuda_nofma || !twin_row(lane).decide) continue;
+    const Verdict twin = decide_one(twin_row(lane).decide, pair);
     must_hold(twin == decide_one(counterpart(lane, Variant::cpu)->decide, pair),
               "a twin without contraction decides as the host does");
     reached(4 * compared++ + static_cast<std::size_t>(twin));

@@ -13,23 +13,9 @@
 
 namespace graze::cuda {
 
-// The twin of a published CUDA lane; null if the lane has no twin.
-DecideBlock::Function twin_block(const Lane& lane);
-
 // The function that gives the lane's verdicts on the host: the lane's own function, or a CUDA lane's twin. For the
 // exact CUDA lane, that is the exact CPU lane, which is built from the same source. Null if there is none.
 DecideBlock block_on_host(const Lane& lane);
-
-// A function that writes each pair's trace hash (see cuda/lanes/trace.h). The hash includes the verdict.
-template <class AnyPair>
-using TraceFunction = void (*)(const AnyPair* pairs, std::size_t count, std::uint64_t* hashes);
-using TraceBlock = TraceFunction<Pair>;
-TraceBlock twin_trace(const Lane& lane);
-TraceFunction<DoublePair> twin_trace_of_doubles(const Lane& lane);
-
-// The function that records the twin's values; null without a twin, and in builds by scripts/campaign.
-RecordBlock twin_record(const Lane& lane);
-RecordFunction<DoublePair> twin_record_of_doubles(const Lane& lane);  // for a lane in double
 
 // Whether this build has twins of lanes under tolerances; builds by scripts/campaign have none.
 bool has_policy_twins();
@@ -70,6 +56,39 @@ struct ComparisonSite {
   int ptx_line;
 };
 
+// A function that writes each pair's trace hash (see cuda/lanes/trace.h). The hash includes the verdict.
+template <class AnyPair>
+using TraceFunction = void (*)(const AnyPair* pairs, std::size_t count, std::uint64_t* hashes);
+
+// The functions of the kernels for pairs of one coordinate type.
+template <class AnyPair>
+struct TwinFunctions {
+  DecideFunction<AnyPair> decide = nullptr;
+  DecideWithin<AnyPair> absolute = nullptr, relative = nullptr;  // only absolute tolerances; relative tolerances too
+  TraceFunction<AnyPair> trace = nullptr;
+  Verdict (*decide_fusing)(const AnyPair& pair, const std::uint64_t* fused) = nullptr;
+  // The functions of the recording kernel, which is in a separate table, with its own `sites`. record_fusing, like
+  // decide_fusing, fuses only the sites whose bit is set.
+  RecordFunction<AnyPair> record = nullptr;
+  void (*record_fusing)(const AnyPair* pairs, std::size_t count, const Records& to,
+                        const std::uint64_t* fused) = nullptr;
+  // Hashes of the kernels' PTX and contractions, for which a record in cuda/proofs is valid. Empty without a twin.
+  const char* hash = "";
+  const char* trace_hash = "";
+  const char* symbol = "";  // name of the kernel that the twin replays
+  const char* trace_symbol = "";
+  std::span<const ContractionSite> sites = {};
+};
+
+struct TwinRow : TwinFunctions<Pair> {
+  TwinFunctions<DoublePair> doubles;  // for lanes in double
+};
+
+// The row of a published CUDA lane for this processor. The row of a lane without a twin has no functions.
+const TwinRow& twin_row(const Lane& lane);
+// The row of the recording twin. It has no functions without a twin, and in builds by scripts/campaign.
+const TwinRow& record_row(const Lane& lane);
+
 // The contraction sites of a lane's twin, in program order; none if the lane has no twin or no contractions.
 std::span<const ContractionSite> contraction_sites(const Lane& lane);
 // The contraction sites of the kernel that decides pairs of this type.
@@ -99,15 +118,5 @@ struct Comparison {
 // as fit, and `count` receives the number of those.
 Verdict decide_comparing(const Lane& lane, const AnyPair& pair, std::span<const std::uint64_t> fused,
                          std::span<Comparison> made, std::size_t& count);
-
-// The contraction sites of the recording twin. record_fusing records its values and, like decide_fusing, fuses
-// only the sites whose bit is set.
-std::span<const ContractionSite> record_sites(const Lane& lane);
-std::span<const ContractionSite> record_sites_of_doubles(const Lane& lane);
-void record_fusing(const Lane& lane, std::span<const Pair> pairs, const Records& to,
-                   std::span<const std::uint64_t> fused);
-// Requires: a lane in double.
-void record_fusing(const Lane& lane, std::span<const DoublePair> pairs, const Records& to,
-                   std::span<const std::uint64_t> fused);
 
 }  // namespace graze::cuda

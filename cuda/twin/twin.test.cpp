@@ -44,7 +44,7 @@ class Twin : public testing::TestWithParam<const Lane*> {
  protected:
   const Lane& lane() const { return *GetParam(); }
   const Lane& sibling(Variant variant) const { return *counterpart(lane(), variant); }
-  DecideBlock twin(Variant variant) const { return twin_block(sibling(variant)); }
+  DecideBlock twin(Variant variant) const { return twin_row(sibling(variant)).decide; }
 };
 
 // The tests' parameters: one lane for each algorithm and scalar.
@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(Lanes, Twin, testing::ValuesIn(cuda_fma_lanes()),
 TEST_P(Twin, EveryCudaLaneHasOne) {
   for (Variant variant : {Variant::cuda_fma, Variant::cuda_nofma}) {
     EXPECT_NE(twin(variant), nullptr);
-    EXPECT_NE(twin_trace(sibling(variant)), nullptr);
+    EXPECT_NE(twin_row(sibling(variant)).trace, nullptr);
     EXPECT_EQ(std::strlen(twin_row(sibling(variant)).hash), 16u);
     EXPECT_TRUE(twin_evidence(sibling(variant)).starts_with("twin"));
   }
@@ -126,7 +126,7 @@ std::uint64_t traced(int algorithm, Scalar scalar, const Pair& pair, const std::
 
 TEST_P(Twin, WithoutContractionHasTheCpuLanesIntermediateBits) {
   std::vector<std::uint64_t> hashes(sample().size());
-  twin_trace(sibling(Variant::cuda_nofma))(sample().data(), sample().size(), hashes.data());
+  twin_row(sibling(Variant::cuda_nofma)).trace(sample().data(), sample().size(), hashes.data());
   int differ = 0;
   for (std::size_t i = 0; i < hashes.size(); ++i) {
     differ +=
@@ -137,8 +137,8 @@ TEST_P(Twin, WithoutContractionHasTheCpuLanesIntermediateBits) {
 
 TEST_P(Twin, ContractionChangesIntermediateBits) {
   std::vector<std::uint64_t> fused(sample().size()), unfused(sample().size());
-  twin_trace(sibling(Variant::cuda_fma))(sample().data(), sample().size(), fused.data());
-  twin_trace(sibling(Variant::cuda_nofma))(sample().data(), sample().size(), unfused.data());
+  twin_row(sibling(Variant::cuda_fma)).trace(sample().data(), sample().size(), fused.data());
+  twin_row(sibling(Variant::cuda_nofma)).trace(sample().data(), sample().size(), unfused.data());
   EXPECT_NE(fused, unfused);
 }
 
@@ -177,7 +177,7 @@ TEST(Twin, DecideFusingRefusesTooFewBits) {
 }
 
 TEST(Twin, BlocksOfAnyLengthFillWholeWords) {
-  const DecideBlock decide = twin_block(*find_lane("interval_overlap/f32/cuda-fma"));
+  const DecideBlock decide = twin_row(*find_lane("interval_overlap/f32/cuda-fma")).decide;
   for (std::size_t n : {std::size_t{1}, std::size_t{63}, std::size_t{64}, std::size_t{65}}) {
     std::vector<std::uint64_t> yes(2, ~std::uint64_t{0}), declined(2, ~std::uint64_t{0});
     decide(sample().data(), n, yes.data(), declined.data());

@@ -69,7 +69,7 @@ std::uint64_t traced_in_double(int algorithm, const DoublePair& pair, const std:
 TEST_P(TwinOfDoubles, WithoutContractionHasTheCpuLanesIntermediateBits) {
   const std::vector<DoublePair>& pairs = double_sample();
   std::vector<std::uint64_t> hashes(pairs.size());
-  twin_trace_of_doubles(sibling(Variant::cuda_nofma))(pairs.data(), pairs.size(), hashes.data());
+  twin_row(sibling(Variant::cuda_nofma)).doubles.trace(pairs.data(), pairs.size(), hashes.data());
   int differ = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i)
     differ += hashes[i] != traced_in_double(lane().algorithm, pairs[i], static_cast<const Algorithms*>(nullptr));
@@ -88,8 +88,8 @@ TEST_P(TwinOfDoubles, DecidesFloatsAsTheTwinOfFloats) {
     doubles.push_back(in_doubles(floats.back()));
   }
   std::vector<std::uint64_t> hashes(floats.size()), of_doubles(floats.size());
-  twin_trace(lane())(floats.data(), floats.size(), hashes.data());
-  twin_trace_of_doubles(lane())(doubles.data(), doubles.size(), of_doubles.data());
+  twin_row(lane()).trace(floats.data(), floats.size(), hashes.data());
+  twin_row(lane()).doubles.trace(doubles.data(), doubles.size(), of_doubles.data());
   EXPECT_EQ(hashes, of_doubles);
 }
 
@@ -182,8 +182,8 @@ TEST_P(TwinOfDoubles, RecordsWithoutContractionAreTheCpuLanes) {
   std::size_t by_contraction = 0;
   for_each_block([&](std::span<const DoublePair> pairs, std::size_t first) {
     const BlockRun host = recorded(cpu, pairs, host_record_of_doubles(cpu));
-    ASSERT_EQ(recorded(nofma, pairs, twin_record_of_doubles(nofma)).differences(host), 0u) << first;
-    by_contraction += recorded(lane(), pairs, twin_record_of_doubles(lane())).differences(host);
+    ASSERT_EQ(recorded(nofma, pairs, record_row(nofma).doubles.record).differences(host), 0u) << first;
+    by_contraction += recorded(lane(), pairs, record_row(lane()).doubles.record).differences(host);
   });
   EXPECT_GT(by_contraction * 5, double_sample().size());
 }
@@ -193,7 +193,7 @@ TEST_P(TwinOfDoubles, RecordedVerdictsAreTheVerdicts) {
     const std::vector<Verdict> verdicts = verdicts_in_double(block_on_host(sibling(variant)));
     std::size_t differ = 0;
     for_each_block([&](std::span<const DoublePair> pairs, std::size_t first) {
-      const BlockRun run = recorded(sibling(variant), pairs, twin_record_of_doubles(sibling(variant)));
+      const BlockRun run = recorded(sibling(variant), pairs, record_row(sibling(variant)).doubles.record);
       for (std::size_t i = 0; i < pairs.size(); ++i)
         differ += recorded_verdict(run.paths[i].path) != verdicts[first + i];
     });
@@ -202,19 +202,20 @@ TEST_P(TwinOfDoubles, RecordedVerdictsAreTheVerdicts) {
 }
 
 TEST_P(TwinOfDoubles, RecordsFusingAllSitesAreThoseOfCudaFmaAndNoneThoseOfCudaNofma) {
-  const std::size_t sites = record_sites_of_doubles(lane()).size();
+  const std::size_t sites = record_row(lane()).doubles.sites.size();
   ASSERT_GT(sites, 0u);
   const std::vector<std::uint64_t> none((sites + 63) / 64, 0), all(none.size(), ~std::uint64_t{0});
   for_each_block([&](std::span<const DoublePair> pairs, std::size_t first) {
     if (first % 5'000 != 0) return;  // take only one block of each stratum
     for (const auto& [variant, mask] : {std::pair(Variant::cuda_fma, all), {Variant::cuda_nofma, none}}) {
-      const BlockRun run = recorded(sibling(variant), pairs, twin_record_of_doubles(sibling(variant)));
-      const BlockRun fusing(lane(), pairs.size(),
-                            [&, &of = mask](const Records& to) { record_fusing(lane(), pairs, to, of); });
+      const BlockRun run = recorded(sibling(variant), pairs, record_row(sibling(variant)).doubles.record);
+      const BlockRun fusing(lane(), pairs.size(), [&, &of = mask](const Records& to) {
+        record_row(lane()).doubles.record_fusing(pairs.data(), pairs.size(), to, of.data());
+      });
       EXPECT_EQ(fusing.differences(run), 0u) << first;
     }
   });
-  for (const ContractionSite& site : record_sites_of_doubles(lane())) {
+  for (const ContractionSite& site : record_row(lane()).doubles.sites) {
     EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(GRAZE_SOURCE_DIR) / site.at.file)) << site.at.file;
     EXPECT_GT(site.at.line, 0);
   }
@@ -228,8 +229,8 @@ TEST_P(TwinOfDoubles, RecordsOfFloatsAreThoseOfTheTwinOfFloats) {
     doubles.push_back(in_doubles(floats.back()));
   }
   const BlockRun of_floats(lane(), floats.size(),
-                           [&](const Records& to) { twin_record(lane())(floats.data(), floats.size(), to); });
-  EXPECT_EQ(recorded(lane(), doubles, twin_record_of_doubles(lane())).differences(of_floats), 0u);
+                           [&](const Records& to) { record_row(lane()).record(floats.data(), floats.size(), to); });
+  EXPECT_EQ(recorded(lane(), doubles, record_row(lane()).doubles.record).differences(of_floats), 0u);
 }
 
 // The evidence comes from the record for double kernels, not from the one for float32.
@@ -255,8 +256,8 @@ TEST_P(TwinOfDoubles, EvidenceSaysWhatTheRecordSays) {
 TEST(TwinOfDoubles, LanesInFloatHaveNone) {
   EXPECT_EQ(twin_row(*find_lane("moller_1997/f32/cuda-fma")).doubles.decide, nullptr);
   EXPECT_FALSE(block_on_host(*find_lane("moller_1997/f32/cuda-fma")).decides_doubles());
-  EXPECT_EQ(twin_record_of_doubles(*find_lane("moller_1997/f32/cuda-fma")), nullptr);
-  EXPECT_TRUE(record_sites_of_doubles(*find_lane("moller_1997/f32/cuda-fma")).empty());
+  EXPECT_EQ(record_row(*find_lane("moller_1997/f32/cuda-fma")).doubles.record, nullptr);
+  EXPECT_TRUE(record_row(*find_lane("moller_1997/f32/cuda-fma")).doubles.sites.empty());
   EXPECT_EQ(host_record_of_doubles(*find_lane("moller_1997/f32/cpu")), nullptr);
 }
 

@@ -11,29 +11,6 @@
 
 namespace graze::cuda {
 
-// The functions of the kernels for pairs of one coordinate type.
-template <class AnyPair>
-struct TwinFunctions {
-  DecideFunction<AnyPair> decide = nullptr;
-  DecideWithin<AnyPair> absolute = nullptr, relative = nullptr;  // only absolute tolerances; relative tolerances too
-  TraceFunction<AnyPair> trace = nullptr;
-  Verdict (*decide_fusing)(const AnyPair& pair, const std::uint64_t* fused) = nullptr;
-  // The functions of the recording kernel, which is in a separate table, with its own `sites`.
-  RecordFunction<AnyPair> record = nullptr;
-  void (*record_fusing)(const AnyPair* pairs, std::size_t count, const Records& to,
-                        const std::uint64_t* fused) = nullptr;
-  // Hashes of the kernels' PTX and contractions, for which a record in cuda/proofs is valid. Empty without a twin.
-  const char* hash = "";
-  const char* trace_hash = "";
-  const char* symbol = "";  // name of the kernel that the twin replays
-  const char* trace_symbol = "";
-  std::span<const ContractionSite> sites = {};
-};
-
-struct TwinRow : TwinFunctions<Pair> {
-  TwinFunctions<DoublePair> doubles;  // for lanes in double
-};
-
 struct TwinTable {
   std::array<std::array<TwinRow, 2>, kAlgorithmCount> rows;
 };
@@ -51,8 +28,5 @@ struct TwinTable {
   GRAZE_DECLARE(twin_##name##_portable)
 #include "core/variants.inc"
 #undef GRAZE_VARIANT
-
-// The lane's row for this processor. The row of a lane without a twin has no functions.
-const TwinRow& twin_row(const Lane& lane);
 
 }  // namespace graze::cuda

@@ -254,7 +254,7 @@ class WrongOnce final : public cuda::Device {
                 {analysis::Bits((pairs.size() + 63) / 64), analysis::Bits((pairs.size() + 63) / 64)});
     for (std::size_t l = 0; l < cuda_lanes.size(); ++l) {
       const Lane& lane = *cuda_lanes[l];
-      cuda::twin_block(lane)(pairs.data(), pairs.size(), bits[l].intersects.data(), bits[l].declined.data());
+      cuda::twin_row(lane).decide(pairs.data(), pairs.size(), bits[l].intersects.data(), bits[l].declined.data());
       bits[l].intersects[0] ^= 1u << 7;
     }
     flipped.push_back(pairs[7]);

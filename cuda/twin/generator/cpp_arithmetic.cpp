@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cuda/twin/generator/cpp_arithmetic.h"
-
 #include <fmt/format.h>
+
+#include "cuda/twin/generator/cpp_operands.h"
 
 namespace graze::cuda::twin {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One PTX instruction's operands as C++ expressions, for the functions that write statements.
+// One PTX instruction's operands as C++ expressions, and the functions that write statements with them.
 #pragma once
 
 #include <initializer_list>
@@ -61,5 +61,14 @@ class Operands {
   const Kernel& kernel_;
   const Instruction& instruction_;
 };
+
+// Writes PTX arithmetic as C++ statements that call the functions of cuda/twin/twin_ops*.h.
+// Throws: PtxError for an instruction that is unknown or cannot be replayed.
+std::string floating_statement(const Operands& operands);
+std::string integer_statement(const Operands& operands);
+
+// One PTX instruction as a statement of the function `run`, which calls the functions of cuda/twin/twin_ops.h; see
+// cpp_writer.h.   Requires: not a label.   Throws: PtxError for an instruction that is unknown or cannot be replayed.
+std::string cpp_statement(const Module& module, const Kernel& kernel, const Instruction& instruction);
 
 }  // namespace graze::cuda::twin

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cuda/twin/generator/cpp_statement.h"
-
 #include <fmt/format.h>
 
-#include "cuda/twin/generator/cpp_arithmetic.h"
 #include "cuda/twin/generator/cpp_operands.h"
 
 namespace graze::cuda::twin {

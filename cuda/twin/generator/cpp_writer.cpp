@@ -9,7 +9,6 @@
 #include <regex>
 
 #include "cuda/twin/generator/cpp_operands.h"
-#include "cuda/twin/generator/cpp_statement.h"
 #include "cuda/twin/generator/ptx_writer.h"
 
 namespace graze::cuda::twin {

@@ -11,23 +11,14 @@
 
 namespace graze::cuda {
 
-#define GRAZE_DECLARE(name)                  \
+// Variants without kernels lack these tables.
+#define GRAZE_VARIANT(name, ...)             \
   namespace name {                           \
   extern const VariantKernels kKernels;      \
   extern const WithinKernels kPolicyKernels; \
   extern const BoundKernels kBoundKernels;   \
   extern const RecordKernels kRecordKernels; \
   }
-#define GRAZE_DECLARE_host_rounded(name)
-#define GRAZE_DECLARE_host_contracted(name)
-#define GRAZE_DECLARE_host_fast(name)
-#define GRAZE_DECLARE_program_unknown(name)
-#define GRAZE_DECLARE_device_exact(name)
-#define GRAZE_DECLARE_device_flushed(name)
-#define GRAZE_DECLARE_device_rounded(name) GRAZE_DECLARE(name)
-#define GRAZE_DECLARE_device_contracted(name) GRAZE_DECLARE(name)
-#define GRAZE_DECLARE_device_fast(name) GRAZE_DECLARE(name)
-#define GRAZE_VARIANT(name, id, runs_on, arithmetic, ...) GRAZE_DECLARE_##runs_on##_##arithmetic(name)
 #include "core/variants.inc"
 #undef GRAZE_VARIANT
 
@@ -41,24 +32,21 @@ struct KernelTables {
 };
 
 const KernelTables& tables_of(Variant variant) {
-#define GRAZE_KERNELS_host_rounded(name) \
+#define GRAZE_KERNELS_exact(name) \
   KernelTables {}
-#define GRAZE_KERNELS_host_contracted(name) \
+#define GRAZE_KERNELS_flushed(name) \
   KernelTables {}
-#define GRAZE_KERNELS_host_fast(name) \
-  KernelTables {}
-#define GRAZE_KERNELS_program_unknown(name) \
-  KernelTables {}
-#define GRAZE_KERNELS_device_exact(name) \
-  KernelTables {}
-#define GRAZE_KERNELS_device_flushed(name) \
-  KernelTables {}
-#define GRAZE_KERNELS_device_rounded(name) \
+#define GRAZE_KERNELS_rounded(name) \
   KernelTables { &name::kKernels, &name::kPolicyKernels, &name::kRecordKernels, &name::kBoundKernels }
-#define GRAZE_KERNELS_device_contracted(name) GRAZE_KERNELS_device_rounded(name)
-#define GRAZE_KERNELS_device_fast(name) \
+#define GRAZE_KERNELS_contracted(name) GRAZE_KERNELS_rounded(name)
+#define GRAZE_KERNELS_fast(name) \
   KernelTables { &name::kKernels, &name::kPolicyKernels, &name::kRecordKernels, nullptr }
-#define GRAZE_VARIANT(name, id, runs_on, arithmetic, ...) GRAZE_KERNELS_##runs_on##_##arithmetic(name),
+#define GRAZE_TABLES_host(name, arithmetic) \
+  KernelTables {}
+#define GRAZE_TABLES_program(name, arithmetic) \
+  KernelTables {}
+#define GRAZE_TABLES_device(name, arithmetic) GRAZE_KERNELS_##arithmetic(name)
+#define GRAZE_VARIANT(name, id, runs_on, arithmetic, ...) GRAZE_TABLES_##runs_on(name, arithmetic),
   static constexpr KernelTables kBuilt[] = {
 #include "core/variants.inc"
   };

@@ -16,7 +16,7 @@
 #include "core/exact/exact.h"
 #include "core/exact/find_nesting.h"
 #include "core/relation_of.h"
-#include "cuda/engine/host_engine.h"
+#include "cuda/engine/host_engine_testing.h"
 #include "oracle/truth.h"
 #include "strata/strata.h"
 

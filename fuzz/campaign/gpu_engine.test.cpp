@@ -4,7 +4,7 @@
 #include "fuzz/campaign/gpu_engine.h"
 
 #include "core/message_testing.h"
-#include "cuda/engine/host_engine.h"
+#include "cuda/engine/host_engine_testing.h"
 #include "fuzz/campaign/campaign_testing.h"
 #include "fuzz/campaign/changed_verdicts.h"
 #include "oracle/truth.h"

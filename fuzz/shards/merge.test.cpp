@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/message_testing.h"
-#include "cuda/engine/host_engine.h"
+#include "cuda/engine/host_engine_testing.h"
 #include "fuzz/campaign/campaign_testing.h"
 #include "fuzz/campaign/cpu_engine.h"
 #include "fuzz/campaign/rank_stores.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cuda/engine/host_engine.h"
+#include "cuda/engine/host_engine_testing.h"
 
 #include <algorithm>
 #include <bit>

@@ -10,6 +10,7 @@
 #include <optional>
 #include <regex>
 #include <sstream>
+#include <utility>
 
 #include "core/cannot.h"
 #include "core/error.h"
@@ -133,8 +134,8 @@ twin::Module module_of(const CudaBuild& build, const fs::path& source) {
   return twin::reduced(module, kSubjectKernel);
 }
 
-// The concatenated text of subject.h, the twins' operations and twin_exports.inl, cut into pieces.
-constexpr const char* kTwinText[] = {
+// The names and texts of subject.h, the headers of the twins' operations and twin_exports.inl.
+constexpr std::pair<const char*, const char*> kTwinText[] = {
 #include "cuda/generated/twin_text.inc"
 };
 
@@ -161,9 +162,19 @@ std::string version_of(const std::string& program, const fs::path& cache) {
   return said.substr(0, said.find('\n'));
 }
 
+// A file's text without its includes of project headers, whose text comes earlier.
+std::string without_own_includes(const std::string& file) {
+  std::istringstream in(file);
+  std::string text;
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("#include \"") && line != "#pragma once") text += line + "\n";
+  }
+  return text;
+}
+
 std::string source_of(const twin::Module& module, Scalar scalar) {
   std::string text;
-  for (const char* piece : kTwinText) text += piece;
+  for (const auto& [file, whole] : kTwinText) text += without_own_includes(whole);
   std::ostringstream kernels;
   kernels << "using Real = " << name(scalar) << ";\n";
   twin::write_cpp(kernels, module, twin::Rule::ptxas);

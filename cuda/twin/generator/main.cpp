@@ -18,26 +18,7 @@ constexpr char kUsage[] =
     "  --cpp OUT              C++ for the CPU, with the contractions of ptxas\n"
     "  --explicit OUT         the PTX with every contraction written out\n"
     "  --stored ROOT OUT      the PTX in the form stored in the repository, with paths relative to ROOT\n"
-    "  --embedded OUT         the explicit PTX as C++ string literals, for inclusion\n"
-    "usage: graze_twin_generator --text OUT FILE …   the files as C++ string literals, without their own includes\n"
     "usage: graze_twin_generator --proofs OUT [RECORD …]\n";
-
-// Writes the text as a list of raw string literals, because compilers limit a literal's length.
-void write_literal(std::ostream& out, const std::string& text) {
-  constexpr std::size_t kPiece = 8000;
-  for (std::size_t at = 0; at < text.size(); at += kPiece) out << "R\"ptx(" << text.substr(at, kPiece) << ")ptx\",\n";
-}
-
-// A file's text without its includes of project headers, whose text comes earlier.
-std::string without_own_includes(const std::string& path) {
-  std::ifstream in(path);
-  if (!in) throw PtxError(path + ":0: cannot be read");
-  std::string text;
-  for (std::string line; std::getline(in, line);) {
-    if (!line.starts_with("#include \"") && line != "#pragma once") text += line + "\n";
-  }
-  return text;
-}
 
 void write_file(const std::string& path, const std::string& text) {
   std::ofstream out(path);
@@ -49,11 +30,6 @@ int run(int count, char** arguments) {
   if (count > 2 && std::strcmp(arguments[1], "--proofs") == 0) {
     std::ostringstream text;
     write_proofs(text, {arguments + 3, arguments + count});
-    return write_file(arguments[2], text.str()), 0;
-  }
-  if (count > 3 && std::strcmp(arguments[1], "--text") == 0) {
-    std::ostringstream text;
-    for (int f = 3; f < count; ++f) write_literal(text, without_own_includes(arguments[f]));
     return write_file(arguments[2], text.str()), 0;
   }
   Rule rule = Rule::ptxas;
@@ -80,10 +56,6 @@ int run(int count, char** arguments) {
       write_explicit(text, module, rule);
     } else if (form == "--stored") {
       write_stored(text, module, root);
-    } else if (form == "--embedded") {
-      std::ostringstream ptx;
-      write_explicit(ptx, module, rule);
-      write_literal(text, ptx.str());
     } else {
       return std::cerr << kUsage, 2;
     }

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 # The tests that run scripts, and the scripts' own tests.
-find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_test(NAME scripts.IncludeDirection COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/check_includes.py ${PROJECT_SOURCE_DIR})
 foreach(script check_includes findings league measurements mutate near_models same_results speed_table torture update_generated verdicts_apart)
   add_test(NAME scripts.test.${script} COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/${script}.test.py)

@@ -19,3 +19,13 @@ foreach(row IN LISTS rows)
   endif()
   set(variant_${name}_flags ${flags})
 endforeach()
+
+# graze_objects(NAME NAMESPACE SOURCES file… [FLAGS flag…]) makes the object library NAME, compiled with these flags and
+# in the namespace NAMESPACE, which the sources call GRAZE_FP.
+function(graze_objects name namespace)
+  cmake_parse_arguments(arg "" "" "SOURCES;FLAGS" ${ARGN})
+  add_library(${name} OBJECT ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE graze_flags)
+  target_compile_definitions(${name} PRIVATE GRAZE_FP=${namespace})
+  target_compile_options(${name} PRIVATE ${arg_FLAGS})
+endfunction()

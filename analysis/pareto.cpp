@@ -94,17 +94,6 @@ Cost quartiles(std::vector<double> nanoseconds) {
   return {nanoseconds[quarter], nanoseconds[nanoseconds.size() / 2], nanoseconds[nanoseconds.size() - 1 - quarter]};
 }
 
-std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const strata::PairBlock& pairs, int passes,
-                           Calls calls) {
-  std::vector<std::vector<double>> taken(lanes.size());
-  for (int pass = 0; pass < passes; ++pass) {
-    for (std::size_t l = 0; l < lanes.size(); ++l) taken[l].push_back(nanoseconds_a_pair(lanes[l], pairs, calls));
-  }
-  std::vector<Cost> costs;
-  for (std::vector<double>& of : taken) costs.push_back(quartiles(std::move(of)));
-  return costs;
-}
-
 std::string why_not_timed(const Lane& lane) {
   if (backends::language_of(lane) == backends::Language::cuda)
     return lane.foreign ? "a CUDA source is not timed" : "only --device times CUDA lanes";

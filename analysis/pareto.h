@@ -27,16 +27,13 @@ double nanoseconds_a_pair(const DecideBlock& lane, const strata::PairBlock& pair
 // Requires: at least one.
 Cost quartiles(std::vector<double> nanoseconds);
 
-// Requires: pairs.
-std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const strata::PairBlock& pairs, int passes,
-                           Calls calls = Calls::of_blocks);
-
 // Why timing the lane would not time its code, as for twins and for programs that answer line by line. Empty if the
 // lane can be timed.
 std::string why_not_timed(const Lane& lane);
 
 // The costs of lanes. The time of a user's code is its own process's processor time, without communication. User code
 // that takes no blocks decides one pair per call. A lane that is not timed, or failed on a pair, has no cost.
+// Requires: pairs.
 std::vector<std::optional<Cost>> costs_of(std::span<const Lane* const> lanes, const strata::PairBlock& pairs,
                                           int passes, Calls calls = Calls::of_blocks);
 

@@ -54,11 +54,12 @@ TEST(Pareto, CostsAreOfAllPairsInTurn) {
     EXPECT_TRUE(both.doubles[i].a[0] == pair.doubles.a[0]) << i;
     EXPECT_TRUE(both.floats[i].a[0] == stored_in_float32(pair.doubles).a[0]) << i;
   }
-  const std::vector<DecideBlock> lanes = {find_lane("exact/f32/cpu")->decide, find_lane("moller_1997/f32/cpu")->decide};
-  for (const Cost& cost : costs_of(lanes, first_pairs(sources, 40), 9)) {
-    EXPECT_GT(cost.low, 0);
-    EXPECT_LE(cost.low, cost.middle);
-    EXPECT_LE(cost.middle, cost.high);
+  const std::vector<const Lane*> lanes = {find_lane("exact/f32/cpu"), find_lane("moller_1997/f32/cpu")};
+  for (const std::optional<Cost>& cost : costs_of(lanes, first_pairs(sources, 40), 9)) {
+    ASSERT_TRUE(cost);
+    EXPECT_GT(cost->low, 0);
+    EXPECT_LE(cost->low, cost->middle);
+    EXPECT_LE(cost->middle, cost->high);
   }
 }
 

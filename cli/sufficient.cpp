@@ -62,11 +62,11 @@ void print_sufficient(const std::string& scene, double rate) {
     candidates.push_back({lane.id, lane.scalar, analysis::TuneResult::satisfied, tuned.zero_confirmed, bound, {}});
   }
   const Lane& exact = *find_lane(types == PairTypes::f64 ? fuzz::kExactDoubles : fuzz::kExactLane);
-  std::vector<DecideBlock> timed{exact.decide};
-  for (const Lane& lane : lanes) timed.push_back(lane.decide);
-  const std::vector<analysis::Cost> costs =
+  std::vector<const Lane*> timed{&exact};
+  for (const Lane& lane : lanes) timed.push_back(&lane);
+  const std::vector<std::optional<analysis::Cost>> costs =
       analysis::costs_of(timed, analysis::first_pairs(spec.others, kTimed), kPasses);
-  for (std::size_t c = 0; c < candidates.size(); ++c) candidates[c].cost = costs[c + 1];
+  for (std::size_t c = 0; c < candidates.size(); ++c) candidates[c].cost = costs[c + 1].value();
   const strata::SceneSources last = drawn({pairs, 3, {}, types, scene});
   // Candidates were selected by their errors on earlier pairs, so fresh pairs must confirm the cheapest one.
   while (const Candidate* best = reports::cheapest_sufficient(candidates)) {
@@ -79,7 +79,7 @@ void print_sufficient(const std::string& scene, double rate) {
     if (chosen.bound <= rate) break;
     chosen.result = analysis::TuneResult::not_confirmed;
   }
-  std::vector<std::string> sentences = reports::sufficient_sentences(rate, candidates, exact.id, costs[0]);
+  std::vector<std::string> sentences = reports::sufficient_sentences(rate, candidates, exact.id, costs[0].value());
   sentences.push_back(reports::costs_sentence(analysis::Calls::of_blocks,
                                               fmt::format("{} of the scene's pairs", reports::grouped(kTimed)),
                                               fuzz::machine_name(), kPasses));

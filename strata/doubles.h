@@ -10,16 +10,6 @@
 namespace graze::strata {
 inline namespace GRAZE_FP {
 
-GRAZE_INLINE void scale_all(Draft& draft, double size) {
-  scale(draft.a, {size, size, size});
-  scale(draft.b, {size, size, size});
-}
-
-GRAZE_INLINE void move_all(Draft& draft, const Vec& by) {
-  move(draft.a, by);
-  move(draft.b, by);
-}
-
 // Like exact_contact, but with integers of `bits` bits. Half of the contacts are exact; in the other half, a coordinate
 // of b[0] is one unit off.
 // Requires: 7 <= bits.
@@ -51,10 +41,10 @@ GRAZE_HD inline DoublePair large_offset(DoubleDraws& draws) {
   const Push push = draw_push(draws);
   move(contact.draft.b, contact.away * push.gap);
   const double size = 0.1 + 0.9 * draws.positive();
-  scale_all(contact.draft, size / power_of_ten(draws.between(1, 3)));
+  scale(contact.draft, size / power_of_ten(draws.between(1, 3)));
   const double far = power_of_ten(draws.between(5, 7));
   const Vec to = draws.reals();
-  move_all(contact.draft, normalised(to) * far);
+  move(contact.draft, normalised(to) * far);
   return finished(draws, contact.draft, push);
 }
 
@@ -148,7 +138,7 @@ GRAZE_HD inline DoublePair stored(DoubleDraws& draws) {
     move(contact.draft.b, contact.away * (sign * power_of_two(-draws.between(24, 40))));
     const Vec to = draws.reals();
     const double offset = draws.coin() ? 0 : power_of_two(draws.between(0, 12));
-    move_all(contact.draft, to * offset);
+    move(contact.draft, to * offset);
     pair = rounded(draws, contact.draft);
     Pair in_float32;
     for (int i = 0; i < 3; ++i) {
@@ -167,10 +157,10 @@ GRAZE_HD inline DoublePair radians(DoubleDraws& draws) {
   Contact contact = draw_contact(draws, draw_touch(draws), real_grain(draws));
   const Push push = draw_push(draws);
   move(contact.draft.b, contact.away * push.gap);
-  scale_all(contact.draft, 1e-5 * draws.positive());  // edges stay under 6e-5
+  scale(contact.draft, 1e-5 * draws.positive());  // edges stay under 6e-5
   const double longitude = draws.real() * 3.141592653589793, latitude = draws.real() * 1.5707963267948966,
                height = draws.positive() * 1e-3;
-  move_all(contact.draft, {longitude, latitude, height});
+  move(contact.draft, {longitude, latitude, height});
   return finished(draws, contact.draft, push);
 }
 

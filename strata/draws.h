@@ -181,11 +181,20 @@ struct Draft {
 GRAZE_INLINE void move(Vec (&triangle)[3], const Vec& by) {
   for (Vec& vertex : triangle) vertex = vertex + by;
 }
+GRAZE_INLINE void move(Draft& draft, const Vec& by) {
+  move(draft.a, by);
+  move(draft.b, by);
+}
 
 // Scales each axis by its own factor.
 GRAZE_INLINE void scale(Vec (&triangle)[3], const Vec& by) {
   for (Vec& vertex : triangle) vertex = {vertex.x * by.x, vertex.y * by.y, vertex.z * by.z};
 }
+GRAZE_INLINE void scale(Draft& draft, const Vec& by) {
+  scale(draft.a, by);
+  scale(draft.b, by);
+}
+GRAZE_INLINE void scale(Draft& draft, double size) { scale(draft, {size, size, size}); }
 
 GRAZE_INLINE Vec3<float> rounded(const Vec& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};

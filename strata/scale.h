@@ -16,8 +16,7 @@ GRAZE_HD inline auto far_from_origin(auto& draws) {
   const Vec direction = normalised(draws.reals());
   const double fraction = 1 + draws.positive();
   const Vec offset = direction * (fraction * power_of_two(draws.between(7, draws.kOffset)));
-  move(contact.draft.a, offset);
-  move(contact.draft.b, offset);
+  move(contact.draft, offset);
   return finished(draws, contact.draft, push);
 }
 
@@ -32,11 +31,7 @@ GRAZE_HD inline auto extreme_scale(auto& draws) {
   // Contacts reach 3 (reals) or 2^24 (integers; doubles: 2^53), so the largest coordinate stays below 2^128 (doubles:
   // 2^1024). Scaling takes two steps, because no double is a power of two below 2^-1074. The first step is exact.
   const int exponent = draws.between(draws.kLeastScale, draws.kMostScale) - (exact ? draws.kBits - 1 : 0);
-  for (const int part : {exponent / 2, exponent - exponent / 2}) {
-    const double size = power_of_two(part);
-    scale(contact.draft.a, {size, size, size});
-    scale(contact.draft.b, {size, size, size});
-  }
+  for (const int part : {exponent / 2, exponent - exponent / 2}) scale(contact.draft, power_of_two(part));
   return finished(draws, contact.draft, push);
 }
 
@@ -48,24 +43,18 @@ GRAZE_HD inline auto mixed_scale(auto& draws) {
     const Vec size{power_of_two(draws.integer(draws.kRatio)), power_of_two(draws.integer(draws.kRatio)),
                    power_of_two(draws.integer(draws.kRatio))};
     move(draft.b, contact.away * push.gap);
-    scale(draft.a, size);
-    scale(draft.b, size);
+    scale(draft, size);
     return finished(draws, draft, push);
   }
   // Shrinks one triangle, and the gap, towards the contact.
   const double size = power_of_two(-draws.between(1, draws.kGap));
   const bool shrink_a = draws.coin();
-  const Vec to_origin = contact.p * -1.0;
-  move(draft.a, to_origin);
-  move(draft.b, to_origin);
+  move(draft, contact.p * -1.0);
   scale(shrink_a ? draft.a : draft.b, {size, size, size});
   move(draft.b, contact.away * (push.gap * size));
   // If the contact is at the origin, the small triangle keeps its digits; at other places, its coordinates are rounded
   // to the spacing of the large triangle's coordinates.
-  if (draws.below(4) == 0) {
-    move(draft.a, contact.p);
-    move(draft.b, contact.p);
-  }
+  if (draws.below(4) == 0) move(draft, contact.p);
   return finished(draws, draft, push);
 }
 

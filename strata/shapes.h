@@ -69,9 +69,7 @@ GRAZE_HD inline auto degenerate(auto& draws) {
     const double unit = draws.sign();
     move(draft.b, unit_axis(draws.between(0, 2)) * unit);
   }
-  const double size = power_of_two(-draws.between(0, draws.kBits));
-  scale(draft.a, {size, size, size});
-  scale(draft.b, {size, size, size});
+  scale(draft, power_of_two(-draws.between(0, draws.kBits)));
   return shuffled(draws, rounded(draws, draft));
 }
 

@@ -47,8 +47,7 @@ template <class D>
 GRAZE_HD BasicPair<typename D::Real> finished_on_grid(D& draws, const Scene& scene, Draft draft) {
   if constexpr (D::kBits == 53) {  // makes coordinates begin at 0, so that no sum below needs a 54th bit
     const Vec least{span_of(draft, 0).low, span_of(draft, 1).low, span_of(draft, 2).low};
-    move(draft.a, least * -1.0);
-    move(draft.b, least * -1.0);
+    move(draft, least * -1.0);
   }
   Vec to{0, 0, 0};
   for (int axis = 0; axis < 3; ++axis) {

@@ -78,16 +78,14 @@ GRAZE_HD inline void place(auto& draws, const Scene& scene, Draft& draft) {
     const double room = component(scene.high, axis) - component(scene.low, axis);
     if (span.high - span.low > room) component(by, axis) = room / (span.high - span.low);
   }
-  scale(draft.a, by);
-  scale(draft.b, by);
+  scale(draft, by);
   Vec to{0, 0, 0};
   for (int axis = 0; axis < 3; ++axis) {
     const Interval span = span_of(draft, axis);
     const double low = component(scene.low, axis) - span.low, high = component(scene.high, axis) - span.high;
     component(to, axis) = low + (high - low) * draws.positive();
   }
-  move(draft.a, to);
-  move(draft.b, to);
+  move(draft, to);
 }
 
 // Like `finished` in strata/contact.h, but within the scene.

@@ -248,12 +248,8 @@ GRAZE_HD BasicPair<typename D::Real> draw_stratum(D draws, const Scene& scene) {
       return in_scene::lattice(draws, scene);
     case Stratum::nested:
       return in_scene::nested(draws, scene);
-    case Stratum::thesis:
-    case Stratum::thesis_special:
-    case Stratum::far_from_origin:
-    case Stratum::extreme_scale:
     default:
-      break;  // no scene can contain these strata
+      break;  // no scene can contain the other strata
   }
   return {};
 }

@@ -73,9 +73,10 @@ bool may_have_reason(const Failure& failure, const Reason& reason, const AnyPair
   return in_range(failure, pair) == reason.in_range;
 }
 
-template <class Real>
-bool same_bits(const BasicPair<Real>& l, const BasicPair<Real>& r) {
-  return !simpler_coordinates(l, r) && !simpler_coordinates(r, l);
+// Whether the pairs have the same type and bits.
+bool same_bits(const AnyPair& l, const AnyPair& r) {
+  return l.floats.has_value() == r.floats.has_value() && !simpler_coordinates(l.doubles, r.doubles) &&
+         !simpler_coordinates(r.doubles, l.doubles);
 }
 
 // Applies the move from `before` to `after` `times` times. If the move scaled all changed coordinates by one power of
@@ -119,15 +120,6 @@ std::size_t wrong_at(const Failure& failure, const BasicPair<Real>& pair) {
 template <class Real>
 bool counts(const Failure& failure, const BasicPair<Real>& pair) {
   return wrong_at(failure, pair) < failure.lanes.size();
-}
-
-// The pair if its coordinates have this type, otherwise null.
-template <class Real>
-const BasicPair<Real>* pair_in(const AnyPair& pair) {
-  if constexpr (std::is_same_v<Real, float>)
-    return pair.floats ? &*pair.floats : nullptr;
-  else
-    return pair.floats ? nullptr : &pair.doubles;
 }
 
 struct FoundCause {
@@ -243,9 +235,9 @@ struct Walk {
   }
 
   bool ends_in_known() {
+    const AnyPair last = way.back();
     const auto met = std::find_if(known.begin(), known.end(), [&](const Minimised& other) {
-      const PairOf* pair = pair_in<Real>(other.pair);
-      return other.one_minimal && pair && same_bits(*pair, way.back());
+      return other.one_minimal && same_bits(other.pair, last);
     });
     if (met == known.end()) return false;
     result.single_moves = met->single_moves;

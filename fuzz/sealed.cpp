@@ -18,20 +18,6 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kChecksum = "checksum";
 constexpr int kDeepest = 64;  // levels; our files have at most ten
 
-bool is_too_deep(const std::string& text) {
-  int depth = 0;
-  bool in_text = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_text && c == '\\') ++i;
-    if (c == '"') in_text = !in_text;
-    if (in_text) continue;
-    depth += c == '{' || c == '[' ? 1 : c == '}' || c == ']' ? -1 : 0;
-    if (depth > kDeepest) return true;
-  }
-  return false;
-}
-
 std::string checksum_of(const Json& json) {
   return fmt::format("{:016x}", fnv1a(json.dump(-1, ' ', false, Json::error_handler_t::replace)));
 }
@@ -40,19 +26,22 @@ std::string checksum_of(const Json& json) {
 
 Json parse_shallow(const std::string& text) {
   // The parser would treat a zero byte, which no JSON text has, as the end of the text.
-  if (is_too_deep(text) || text.find('\0') != text.npos) return Json(Json::value_t::discarded);
+  if (text.find('\0') != text.npos) return Json(Json::value_t::discarded);
+  struct Refused {};  // thrown to end the parsing at once
+  using Event = Json::parse_event_t;
   std::vector<std::set<std::string>> keys;  // of the enclosing objects
-  bool twice = false;
-  Json json = Json::parse(
-      text,
-      [&](int, Json::parse_event_t event, const Json& parsed) {
-        if (event == Json::parse_event_t::object_start) keys.emplace_back();
-        if (event == Json::parse_event_t::key) twice |= !keys.back().insert(parsed.get<std::string>()).second;
-        if (event == Json::parse_event_t::object_end) keys.pop_back();
-        return true;
-      },
-      false);
-  return twice ? Json(Json::value_t::discarded) : json;
+  const auto check = [&](int enclosing, Event event, const Json& parsed) {
+    if ((event == Event::object_start || event == Event::array_start) && enclosing >= kDeepest) throw Refused();
+    if (event == Event::object_start) keys.emplace_back();
+    if (event == Event::key && !keys.back().insert(parsed.get<std::string>()).second) throw Refused();
+    if (event == Event::object_end) keys.pop_back();
+    return true;
+  };
+  try {
+    return Json::parse(text, check, false);
+  } catch (const Refused&) {
+    return Json(Json::value_t::discarded);
+  }
 }
 
 Json sealed(Json json) {

@@ -143,7 +143,7 @@ void add_coordinates_option(CLI::App& command, PairTypes& types, OfBothTypes bot
 // Adds --strata, --coordinates and --scene.
 void add_draw_options(CLI::App& command, DrawOptions& options, OfBothTypes both = OfBothTypes::yes);
 
-// If --coordinates is not given, uses the scene's type.   Throws: what fuzz::open_scene throws.
+// If --coordinates is not given, uses the scene's type.   Throws: what strata::read_scene throws.
 void take_type_of_scene(const CLI::App& command, DrawOptions& options);
 PairTypes type_of_scene(const std::string& scene);
 
@@ -166,7 +166,7 @@ void write_scene_of(const std::string& mesh, const std::string& out, std::option
 void print_sufficient(const std::string& scene, double rate);
 
 // Draws from the scene, or from the strata if there is none. For a scene, sets `recorded` to the value of "scene" in
-// the verb's results.   Throws: what fuzz::open_scene, strata::scene_sources and strata::stratum_sources throw.
+// the verb's results.   Throws: what strata::read_scene, strata::scene_sources and strata::stratum_sources throw.
 strata::SceneSources drawn(const DrawOptions& options, fuzz::Json* recorded = nullptr);
 
 // Lists the strata that the scene cannot contain, with the reasons, below a heading; empty for none.

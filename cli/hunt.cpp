@@ -81,8 +81,8 @@ int hunt(const HuntOptions& options) {
   hunt.drawn.sources = std::move(drawn.sources);
   std::optional<strata::Scene> scene;
   if (!options.scene.empty()) {
-    hunt.drawn.scene = &scene.emplace(strata::resolved(
-        strata::with_type(fuzz::open_scene(options.scene).scene, options.coordinates == PairTypes::f64)));
+    hunt.drawn.scene = &scene.emplace(
+        strata::resolved(strata::with_type(strata::read_scene(options.scene), options.coordinates == PairTypes::f64)));
   }
   hunt.campaign.spec = fuzz::hunt_spec(hunt);
   if (!scene_spec.is_null()) hunt.campaign.spec["scene"] = scene_spec;

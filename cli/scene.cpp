@@ -224,7 +224,7 @@ strata::SceneSources drawn(const DrawOptions& options, fuzz::Json* recorded) {
   const auto& [pairs, seed, globs, types, scene] = options;
   if (scene.empty()) return {strata::stratum_sources(seed, pairs, globs, types), {}, {}, {}};
   expect_utf8("--scene", scene);
-  const fuzz::NamedScene named = fuzz::open_scene(scene);
+  const fuzz::NamedScene named{scene, strata::read_scene(scene)};
   strata::SceneSources drawn = fuzz::sources_of(named, seed, pairs, globs, types);
   if (recorded) *recorded = fuzz::scene_spec(named, pairs, drawn);
   return drawn;
@@ -258,7 +258,7 @@ void take_type_of_scene(const CLI::App& command, DrawOptions& options) {
 }
 
 PairTypes type_of_scene(const std::string& scene) {
-  return fuzz::open_scene(scene).scene.in_doubles ? PairTypes::f64 : PairTypes::f32;
+  return strata::read_scene(scene).in_doubles ? PairTypes::f64 : PairTypes::f32;
 }
 
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out) {

@@ -182,7 +182,7 @@ namespace {
 // Returns the unit of the scene's coordinates; empty without a scene that names one.
 std::string units_of(const TuneOptions& options, const fuzz::Json& campaign) {
   std::string units;
-  if (!options.scene.empty()) units = fuzz::open_scene(options.scene).scene.units;
+  if (!options.scene.empty()) units = strata::read_scene(options.scene).units;
   if (campaign.is_object() && campaign["spec"].contains("scene"))
     units = fuzz::recorded_scene(campaign["spec"]["scene"]).scene.units;
   return units == strata::SceneFile().units ? "" : units;

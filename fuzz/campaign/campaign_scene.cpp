@@ -25,16 +25,9 @@ NamedScene scene_of_campaign(const fs::path& directory) {
 
 }  // namespace
 
-NamedScene open_scene(const std::string& file) { return {file, strata::read_scene(file)}; }
-
 strata::SceneSources sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
                                 const std::vector<std::string>& globs, std::optional<PairTypes> types) {
   return strata::scene_sources(scene.scene, fs::path(scene.file).parent_path(), seed, pairs, globs, types);
-}
-
-strata::SceneSources recorded_sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
-                                         const std::vector<std::string>& names) {
-  return strata::named_scene_sources(scene.scene, fs::path(scene.file).parent_path(), seed, pairs, names);
 }
 
 Json scene_spec(const NamedScene& scene, std::uint64_t pairs, const strata::SceneSources& drawn) {
@@ -56,7 +49,8 @@ AnyPair draw_again(const SceneCase& named) {
   const std::size_t hash = named.scene.rfind('#');
   const bool whole = hash == std::string::npos || fs::exists(named.scene);
   const std::string file = whole ? named.scene : named.scene.substr(0, hash);
-  const NamedScene scene = fs::is_directory(file) ? scene_of_campaign(file) : open_scene(file);
+  const NamedScene scene =
+      fs::is_directory(file) ? scene_of_campaign(file) : NamedScene{file, strata::read_scene(file)};
   if (!whole && scene.name().substr(scene.name().rfind('#')) != named.scene.substr(hash))
     throw std::runtime_error(cannot(
         "draw from", file,

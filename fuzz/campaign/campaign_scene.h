@@ -19,16 +19,9 @@ struct NamedScene {
   std::string name() const { return strata::scene_name(file, scene); }  // arm.toml#0123456789abcdef
 };
 
-// Throws: the errors of strata::read_scene.
-NamedScene open_scene(const std::string& file);
-
 // Like strata::scene_sources, but looks for meshes beside the scene's file.
 strata::SceneSources sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
                                 const std::vector<std::string>& globs, std::optional<PairTypes> types = std::nullopt);
-
-// Like strata::named_scene_sources, for the sources that a campaign recorded.
-strata::SceneSources recorded_sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
-                                         const std::vector<std::string>& names);
 
 // The value of "scene" in a campaign's spec: {"file", "name", "pairs" (requested), "text", "left_out": {stratum: why}}.
 nlohmann::ordered_json scene_spec(const NamedScene& scene, std::uint64_t pairs, const strata::SceneSources& drawn);

@@ -23,8 +23,9 @@ std::vector<strata::PairSource> recorded_sources(const Json& spec) {
   std::vector<std::string> strata = spec.at("strata");
   if (spec.contains("hunt")) return {{strata.at(0), spec.at("pairs"), nullptr}};
   if (spec.contains("scene")) {
-    const Json& scene = spec["scene"];
-    return recorded_sources_of(recorded_scene(scene), seed, scene.at("pairs"), strata).sources;
+    const NamedScene scene = recorded_scene(spec["scene"]);
+    const std::filesystem::path folder = std::filesystem::path(scene.file).parent_path();  // meshes are beside the file
+    return strata::named_scene_sources(scene.scene, folder, seed, spec["scene"].at("pairs"), strata).sources;
   }
   std::uint64_t pairs = spec.at("pairs");
   std::vector<strata::PairSource> of_mesh;

@@ -4,11 +4,13 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 
 #include "core/algorithms/algorithms.h"
 #include "core/discrepancy/led.h"
+#include "core/exact/error_bound.h"
+#include "core/exact/grid.h"
 #include "core/margin/axis.h"
+#include "core/margin/frame.h"
 
 namespace graze {
 
@@ -95,22 +97,16 @@ enum : int { in_bounds, length, kFields };
 inline namespace GRAZE_FP {
 
 // Maps a number's bits to an integer, in the order of the values. Neighbours differ by 1, and both zeros give 0.
-GRAZE_HD inline std::int64_t ordered_bits(float x) {
-  std::int32_t bits;
-  memcpy(&bits, &x, sizeof bits);
-  return bits < 0 ? -std::int64_t{bits & 0x7fffffff} : bits;
-}
-GRAZE_HD inline std::int64_t ordered_bits(double x) {
-  std::int64_t bits;
-  memcpy(&bits, &x, sizeof bits);
-  return bits < 0 ? -(bits & 0x7fffffffffffffff) : bits;
+template <class Real>
+GRAZE_HD std::int64_t ordered_bits(Real x) {
+  constexpr auto kSign = exact::detail::Format<Real>::kSign;
+  const auto bits = exact::detail::bits_of(x);
+  const auto size = static_cast<std::int64_t>(bits & ~kSign);
+  return (bits & kSign) != 0 ? -size : size;
 }
 template <class Real>
 GRAZE_HD bool same_bits(Real x, Real y) {
-  std::uint64_t of_x = 0, of_y = 0;
-  memcpy(&of_x, &x, sizeof x);
-  memcpy(&of_y, &y, sizeof y);
-  return (x != x && y != y) || of_x == of_y;
+  return (x != x && y != y) || exact::detail::bits_of(x) == exact::detail::bits_of(y);
 }
 template <class Real>
 GRAZE_HD bool is_finite_value(Real x) {
@@ -384,9 +380,7 @@ GRAZE_HD std::uint64_t run_hash(const Real* values, std::uint64_t stride, const 
     if ((path.asked >> question & 1) == 0) continue;
     for (unsigned which = 0; which <= (two_values >> question & 1); ++which) {
       const Real x = values[(2 * static_cast<unsigned>(question) + which) * stride];
-      std::uint64_t bits = 0;
-      memcpy(&bits, &x, sizeof x);
-      if (x != x) bits = 0x7fffffffu;
+      const std::uint64_t bits = x != x ? 0x7fffffffu : exact::detail::bits_of(x);
       const std::uint64_t mixed = (hash ^ bits) * 0x9e3779b97f4a7c15u;
       hash = mixed ^ mixed >> 32;
     }
@@ -394,27 +388,13 @@ GRAZE_HD std::uint64_t run_hash(const Real* values, std::uint64_t stride, const 
   return hash;
 }
 
-// The largest of the pair's extents along the axes.
-template <class Real>
-GRAZE_HD double extent_of(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {
-  double largest = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (int i = 0; i < 6; ++i) {
-      const double x = static_cast<double>(component(i < 3 ? a[i] : b[i - 3], axis));
-      low = x < low ? x : low;
-      high = x > high ? x : high;
-    }
-    largest = high - low > largest ? high - low : largest;
-  }
-  return largest;
-}
-
 // Compares the runs of two lanes on one pair. axis: the axis of the pair's stratum.
 template <class Algorithm, class Real, class Sink>
 GRAZE_HD void compare_runs(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Run<Real>& first,
                            const Run<Real>& second, const std::uint8_t* degrees, Axis axis, Sink& sink) {
-  PairComparison<Real, Sink> comparison(first, second, degrees, extent_of(a, b), sink);
+  const exact::detail::Vec<double> extents = exact::detail::extent_of(&a[0].x, &b[0].x);
+  const double extent = greater(extents.x, greater(extents.y, extents.z));
+  PairComparison<Real, Sink> comparison(first, second, degrees, extent, sink);
   run_led<Algorithm>(a, b, first.values, first.path, comparison);
   comparison.count_pair(0);
   comparison.count_sites();

@@ -34,17 +34,6 @@ GRAZE_HD inline void convert(float x, double scale, Wide<2>& out) {
   out.limb[1] = high;
   if (x < 0) out = -out;
 }
-GRAZE_HD inline void convert(float x, double, Wide<5>& out) {
-  const std::uint32_t bits = bits_of(x), exponent = bits >> 23 & 0xffu, fraction = bits & 0x7fffffu;
-  const std::uint32_t shift = exponent == 0 ? 0 : exponent - 1;
-  const std::uint64_t mantissa = exponent == 0 ? fraction : fraction | 0x800000u;
-  out = Wide<5>(0);
-  for (std::uint32_t i = 0; i < 5; ++i) {
-    if (i == shift / 64) out.limb[i] = mantissa << shift % 64;
-    if (i == shift / 64 + 1 && shift % 64 > 40) out.limb[i] = mantissa >> (64 - shift % 64);
-  }
-  if (bits >> 31) out = -out;
-}
 
 // Puts a double on the grid of this exponent. The scale may not fit in a double, so the bits are shifted.
 // Requires: x is a multiple of 2^exponent.
@@ -72,6 +61,7 @@ GRAZE_HD void convert(double x, int exponent, Wide<N>& out) {
   }
   if (x < 0) out = -out;
 }
+GRAZE_HD inline void convert(float x, double, Wide<5>& out) { convert(double{x}, -149, out); }
 
 // The second argument of `convert`, which puts coordinates on a grid: a factor for floats, an exponent for doubles.
 template <class Real>

@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <string>
 
+#include "core/exact/grid.h"
 #include "core/pair.h"
 
 namespace graze {
@@ -36,37 +36,21 @@ inline std::string name_of_bucket(Bucket bucket) {
 }
 
 // floor(log2(x)) for a positive normal x; for zero, a smaller value than for any such x.
-GRAZE_HD inline int floor_log2(double x) {
-  std::uint64_t bits;
-  memcpy(&bits, &x, sizeof bits);
-  return static_cast<int>(bits >> 52) - 1023;
-}
+GRAZE_HD inline int floor_log2(double x) { return static_cast<int>(exact::detail::bits_of(x) >> 52) - 1023; }
 
 // log2 of the ulp of the pair's largest coordinate in magnitude: in [-149, 104] for float32, [-1074, 971] for double.
 // Requires: finite coordinates.
-GRAZE_HD inline int log2_ulp(const Pair& pair) {
-  std::uint32_t largest = 0;
-  const float* c = &pair.a[0].x;
+template <class Real>
+GRAZE_HD int log2_ulp(const BasicPair<Real>& pair) {
+  using F = exact::detail::Format<Real>;
+  typename F::Bits largest = 0;
+  const Real* c = &pair.a[0].x;
   for (int i = 0; i < kCoordinates; ++i) {
-    std::uint32_t bits;
-    memcpy(&bits, &c[i], sizeof bits);
-    bits &= 0x7fffffffu;
+    const typename F::Bits bits = exact::detail::bits_of(c[i]) & ~F::kSign;
     if (bits > largest) largest = bits;
   }
-  const int exponent = static_cast<int>(largest >> 23);
-  return (exponent == 0 ? 1 : exponent) - 150;
-}
-GRAZE_HD inline int log2_ulp(const DoublePair& pair) {
-  std::uint64_t largest = 0;
-  const double* c = &pair.a[0].x;
-  for (int i = 0; i < kCoordinates; ++i) {
-    std::uint64_t bits;
-    memcpy(&bits, &c[i], sizeof bits);
-    bits &= 0x7fffffffffffffffu;
-    if (bits > largest) largest = bits;
-  }
-  const int exponent = static_cast<int>(largest >> 52);
-  return (exponent == 0 ? 1 : exponent) - 1075;
+  const int exponent = static_cast<int>(largest >> F::kFraction);
+  return (exponent == 0 ? 1 : exponent) - F::kBias - F::kFraction;
 }
 
 }  // namespace graze

@@ -3,8 +3,6 @@
 // triangles at a time. Undecided pairs are collected and decided in batches. Lanes other than exact decide every pair.
 // Triangles of doubles are rounded only for the slab test, relative to the reference's first vertex: a difference of
 // doubles has a small relative error wherever the triangles are.
-#include "query/cpu.h"
-
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -20,6 +18,7 @@
 #include "core/exact/prepared_triangle.h"
 #include "core/exact_blocks/decide.h"
 #include "core/pair.h"
+#include "query/question.h"
 #if defined(__SSE2__)
 #include <emmintrin.h>
 #endif

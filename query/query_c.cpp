@@ -16,7 +16,6 @@
 
 #include "core/stop.h"
 #include "query/collector.h"
-#include "query/cpu.h"
 #include "query/question.h"
 
 using graze::cuda::DeviceFailure;

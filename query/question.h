@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A query after validation, with its arrays, its lane and its executor.
+// A query after validation, with its arrays, its lane and its executor, and how the cores of this machine run it.
 #pragma once
 
 #include <stdexcept>
@@ -31,5 +31,11 @@ extern DecideBlock (*on_cores)(const Lane& lane);
 
 // Throws: QueryError if an argument is invalid or a required device is missing.
 Question question_of(const graze_query& query);
+
+// Runs on the question's threads until no range is left. The calling thread takes the first ranges alone, because
+// starting threads takes longer than finding a hit among the first triangles.
+// Requires: a host lane; for doubles, the exact lane.
+// Throws: std::bad_alloc, and whatever the progress callback throws.
+void run_on_cpu(const Question& question, cuda::QueryWork& work);
 
 }  // namespace graze::query

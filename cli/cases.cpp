@@ -13,7 +13,7 @@
 #include "core/text.h"
 #include "core/whole.h"
 #include "fuzz/campaign/campaign_scene.h"
-#include "oracle/written.h"
+#include "oracle/truth.h"
 #include "strata/pair_source.h"
 
 namespace graze::cli {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clips the hulls (clipping.h) with rational arithmetic, starting from the pair's integer coordinates on its grid.
-#include "oracle/common_set.h"
-
 #include <algorithm>
 #include <cstdlib>
 
 #include "oracle/clipping.h"
 #include "oracle/integer_pair.h"
+#include "oracle/truth.h"
 
 namespace graze::oracle {
 namespace {

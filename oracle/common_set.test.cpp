@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "oracle/common_set.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <compare>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "core/any_pair.h"
 #include "core/margin/bucket.h"
@@ -58,5 +61,26 @@ inline Hulls hulls(const Pair& pair) { return hulls(in_doubles(pair)); }
 Bucket margin_bucket(const Pair& pair, Verdict verdict);
 // The same bucket for doubles: in double-precision ulps of the largest coordinate.
 Bucket margin_bucket(const DoublePair& pair, Verdict verdict);
+
+// Indices of the pair's numbers that float32 cannot hold as written. Float32 can hold infinities and NaN.
+// Requires: 18 texts; `stored` has their nearest float32 values (core/text.h).
+// Throws: std::runtime_error for an exponent of more than five digits.
+std::vector<std::size_t> rounded(std::span<const std::string> numbers, const Pair& stored);
+
+// Verdict, contact and margin of the numbers as they were typed, as rationals, decided like truth(). Ulps are those of
+// the stored pair.
+// Returns: nothing if every number is stored as written, or if a number is not finite.
+// Exact: always.   Throws: OracleMismatch; the errors of rounded.
+std::optional<Truth> truth_as_written(std::span<const std::string> numbers, const Pair& stored);
+
+// For drawings: the extreme points of the two closed hulls' common set, which are none, one, two, or a convex polygon's
+// vertices in order. Constructed exactly with rationals, and rounded at the end.
+// Requires: finite coordinates.   Exact: except for the rounding to double.
+std::vector<Vec3<double>> common_set(const AnyPair& pair);
+
+// The line where the triangles' planes meet: the two ends of its part within the pair's box, enlarged by a tenth on
+// each side. No points if a triangle is flat, the planes are parallel, or the line misses the box.
+// Requires: finite coordinates.   Exact: like common_set.
+std::vector<Vec3<double>> planes_line(const AnyPair& pair);
 
 }  // namespace graze::oracle

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads numbers as GMP rationals and multiplies all 18 by their common denominator. The oracle decides the resulting
 // integers as usual. The margin is divided by the denominator at the end.
-#include "oracle/written.h"
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -10,6 +8,7 @@
 #include "core/text.h"
 #include "oracle/exact_margin.h"
 #include "oracle/integer_pair.h"
+#include "oracle/truth.h"
 
 namespace graze::oracle {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests the truth of pairs as written, both where float32 changes the pair and where it does not.
-#include "oracle/written.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
@@ -10,6 +8,7 @@
 
 #include "core/text.h"
 #include "oracle/test_pairs.h"
+#include "oracle/truth.h"
 
 namespace graze::oracle {
 namespace {

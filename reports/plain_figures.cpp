@@ -10,7 +10,7 @@
 
 #include "core/margin/bucket.h"
 #include "corpus/pair_format.h"
-#include "oracle/common_set.h"
+#include "oracle/truth.h"
 
 namespace graze::reports {
 namespace {

@@ -2,7 +2,6 @@
 #include "core/text.h"
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -63,51 +62,10 @@ std::optional<Real> parse_real(std::string_view text) {
   return negative ? -magnitude : magnitude;
 }
 
-// A number without its sign: 0.DIGITS * 10^exponent, or 0.DIGITS * 16^exponent (without any binary exponent).
-struct Digits {
-  std::string digits;  // neither begins nor ends with a zero
-  long exponent = 0;
-
-  explicit Digits(std::string_view text, std::string_view ends = "eE") {
-    if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
-    bool behind_point = false;
-    std::size_t at = 0;
-    for (; at < text.size() && ends.find(text[at]) == ends.npos; ++at) {
-      if (text[at] == '.') {
-        behind_point = true;
-      } else if (!digits.empty() || text[at] != '0') {
-        digits += text[at];
-        exponent += !behind_point;
-      } else {
-        exponent -= behind_point;
-      }
-    }
-    digits.erase(digits.find_last_not_of('0') + 1);
-    if (at < text.size()) exponent += std::strtol(std::string(text.substr(at + 1)).c_str(), nullptr, 10);
-    if (digits.empty()) exponent = 0;
-  }
-};
-
 }  // namespace
 
 std::optional<float> parse_float32(std::string_view text) { return parse_real<float>(text); }
 std::optional<double> parse_float64(std::string_view text) { return parse_real<double>(text); }
-
-bool is_exactly(std::string_view text, double value) {
-  if (const std::size_t x = text.find_first_of("xX"); x != text.npos) {
-    const std::string digits = Digits(text.substr(x + 1), "pP").digits;
-    if (digits.empty()) return value == 0;
-    const auto bits_of = [](char c) { return std::bit_width(std::strtoul(std::string(1, c).c_str(), nullptr, 16)); };
-    const auto last = std::strtoul(digits.substr(digits.size() - 1).c_str(), nullptr, 16);
-    const std::size_t bits = 4 * (digits.size() - 1) + static_cast<std::size_t>(bits_of(digits[0])) -
-                             static_cast<std::size_t>(std::countr_zero(last));
-    return bits <= 53 && std::isnormal(value);
-  }
-  char exact[1200];  // a double has at most 767 significant digits
-  const int size = std::snprintf(exact, sizeof exact, "%.800e", value);
-  const Digits written(text), held(std::string_view(exact, static_cast<std::size_t>(size)));
-  return written.digits == held.digits && written.exponent == held.exponent;
-}
 
 std::optional<std::uint64_t> parse_whole(std::string_view text) {
   std::uint64_t value = 0;

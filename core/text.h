@@ -16,10 +16,6 @@ std::optional<float> parse_float32(std::string_view text);
 // The same for doubles.
 std::optional<double> parse_float64(std::string_view text);
 
-// Whether the number in `text` is exactly `value`.
-// Requires: text is a number, and `value` is the finite double nearest to it.   Exact: always.
-bool is_exactly(std::string_view text, double value);
-
 // Returns: the whole number in `text`, without a sign; nothing if `text` is not such a number or is too large.
 std::optional<std::uint64_t> parse_whole(std::string_view text);
 

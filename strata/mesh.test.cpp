@@ -16,7 +16,7 @@
 #include <string>
 
 #include "core/message_testing.h"
-#include "core/text.h"
+#include "strata/mesh_readers/lines.h"
 #include "strata/testing.h"
 
 namespace graze::strata {
@@ -314,6 +314,25 @@ TEST_F(MeshFile, SaysWhatFloat32Rounds) {
   const auto file = write("t.off", kTetrahedron);
   EXPECT_EQ(read_bodies({file}, write("poses.csv", "1 0 0 1000000.01 0 1 0 0 0 0 1 0\n")).rounding.rounded, 12u);
   EXPECT_EQ(read_bodies({file}, write("whole.csv", "1 0 0 1000000 0 1 0 0 0 0 1 0\n")).rounding.rounded, 0u);
+}
+
+TEST(IsExactly, TellsWhatADoubleHides) {
+  for (const char* text : {"0.5", "-0.5", "5e-1", "+00.50000", "0.5000000000000000000000000", "0x1p-1", "0x.8",
+                           "500e-3", "0x0.80000000000000000000p0"})
+    EXPECT_TRUE(is_exactly(text, text[0] == '-' ? -0.5 : 0.5)) << text;
+  for (const char* text : {"0.50000000000000001", "0.49999999999999999999", "0.5000000000000000000000001",
+                           "0x1.00000000000000001p-1", "0x0.800000000000000001"})
+    EXPECT_FALSE(is_exactly(text, 0.5)) << text;
+  EXPECT_TRUE(is_exactly("0.100000001490116119384765625", 0.1f));
+  EXPECT_FALSE(is_exactly("0.1000000014901161193847656", 0.1f));
+  EXPECT_TRUE(is_exactly("0", 0));
+  EXPECT_TRUE(is_exactly("-0.000e5", -0.0));
+  EXPECT_FALSE(is_exactly("1e-400", 0));
+  EXPECT_TRUE(is_exactly("0x1p-1074", 0x1p-1074));
+  EXPECT_FALSE(is_exactly("4.9e-324", 0x1p-1074));
+  EXPECT_TRUE(is_exactly("16777216", 0x1p24));
+  EXPECT_TRUE(is_exactly("1e22", 1e22));
+  EXPECT_FALSE(is_exactly("1e23", 1e23));
 }
 
 // No coordinate moves farther from the file's decimal or binary double than the note states.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "strata/mesh_readers/lines.h"
 
+#include <cfenv>
 #include <charconv>
 #include <cstdlib>
 #include <limits>
@@ -40,6 +41,16 @@ void add_face(Soup& soup, std::span<const std::uint32_t> face) {
   const std::size_t begin = soup.triangles.size();
   for (std::size_t i = 2; i < face.size(); ++i) soup.triangles.push_back({face[0], face[i - 1], face[i]});
   if (face.size() > 3) soup.fans.push_back({begin, soup.triangles.size()});
+}
+
+bool is_exactly(const std::string& text, double value) {
+  const int mode = std::fegetround();
+  std::fesetround(FE_DOWNWARD);
+  const double below = std::strtod(text.c_str(), nullptr);
+  std::fesetround(FE_UPWARD);
+  const double above = std::strtod(text.c_str(), nullptr);
+  std::fesetround(mode);
+  return below == value && above == value;
 }
 
 Lines::Lines(const MeshBytes& file, char comment, Continuation continuation)
@@ -110,11 +121,12 @@ bool is_decimal_of(float stored, double written) {
 Coordinate Lines::coordinate(std::size_t i, Rounding& rounding) const {
   const std::optional<float> value = i < words_.size() ? parse_float32(words_[i]) : std::nullopt;
   if (!value || !file_.may_be(*value)) fail_at(i, "a coordinate that is finite in float32");
-  const double written = std::strtod(std::string(words_[i]).c_str(), nullptr);
+  const std::string word(words_[i]);
+  const double written = std::strtod(word.c_str(), nullptr);
   constexpr std::size_t kTold = 15;  // doubles distinguish all decimals with this many digits
-  const bool is_zero = words_[i].find_first_not_of("+-0.") == words_[i].npos;
-  const bool is_it = is_zero || (words_[i].size() <= kTold && written != 0) || written != static_cast<double>(*value) ||
-                     !std::isfinite(written) || is_exactly(words_[i], written);
+  const bool is_zero = word.find_first_not_of("+-0.") == word.npos;
+  const bool is_it = is_zero || (word.size() <= kTold && written != 0) || written != static_cast<double>(*value) ||
+                     !std::isfinite(written) || is_exactly(word, written);
   rounding.add(written, *value, std::max(std::abs(written) * 0x1p-53, 0x1p-1074), is_it);
   rounding.beyond +=
       std::isfinite(written) && written != static_cast<double>(*value) && !is_decimal_of(*value, written);

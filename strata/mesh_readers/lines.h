@@ -10,6 +10,10 @@
 
 namespace graze::strata {
 
+// Whether the number in `text` is exactly `value`.
+// Requires: text is a number, and `value` is the finite double nearest to it.   Exact: always.
+bool is_exactly(const std::string& text, double value);
+
 // Whether a backslash at the end of a line joins it to the next line.
 enum class Continuation { none, backslash };
 

@@ -396,7 +396,7 @@ TEST(QuickDepth, OverlapsByNothingWhereItTouchesTheAxis) {
 }
 
 TEST(TieProof, ShiftsByAnyNumberOfBits) {
-  const auto x = tie_proof::big<8>(0x123456789abcdef);
+  const exact::detail::Wide<8> x(exact::detail::Int128{0x123456789abcdef});
   auto expected = x;
   for (int bits = 0; bits < 448; ++bits, expected = expected + expected)
     ASSERT_TRUE(tie_proof::shifted_up(x, bits) == expected) << bits;

@@ -19,13 +19,6 @@ template <class Big>
 using Vector = exact::detail::Vec<Big>;
 
 template <int N>
-GRAZE_HD exact::detail::Wide<N> big(std::int64_t x) {
-  exact::detail::Wide<N> result;
-  for (int i = 0; i < N; ++i) result.limb[i] = i == 0 ? static_cast<std::uint64_t>(x) : x < 0 ? ~std::uint64_t{0} : 0;
-  return result;
-}
-
-template <int N>
 GRAZE_HD exact::detail::Wide<N> shifted_up(const exact::detail::Wide<N>& x, int bits) {
   exact::detail::Wide<N> result;
   const int limbs = bits / 64, rest = bits % 64;
@@ -61,6 +54,7 @@ GRAZE_HD Vector<Big> direction(const Vector<Big> (&a)[3], const Vector<Big> (&b)
 template <class Real>
 GRAZE_HD bool are_apart_by(const Real* a, const Real* b, int d, int exponent) {
   using namespace tie_proof;
+  using exact::detail::Int128;
   constexpr bool kFloats = sizeof(Real) == sizeof(float);
   constexpr int kLimbs = kFloats ? 8 : 16, kBits = kFloats ? exact::detail::kIntBits : exact::detail::kMediumBits;
   constexpr int kMostShift = kFloats ? 120 : 200, kLeastShift = kFloats ? -80 : -200;
@@ -71,8 +65,8 @@ GRAZE_HD bool are_apart_by(const Real* a, const Real* b, int d, int exponent) {
   const auto t = exact::detail::triangles<exact::detail::NarrowNumbers>(a, b, grid.exponent);
   Vector<Big> va[3], vb[3];
   for (int i = 0; i < 3; ++i) {
-    va[i] = {big<kLimbs>(t.a[i].x), big<kLimbs>(t.a[i].y), big<kLimbs>(t.a[i].z)};
-    vb[i] = {big<kLimbs>(t.b[i].x), big<kLimbs>(t.b[i].y), big<kLimbs>(t.b[i].z)};
+    va[i] = {Big(Int128{t.a[i].x}), Big(Int128{t.a[i].y}), Big(Int128{t.a[i].z})};
+    vb[i] = {Big(Int128{t.b[i].x}), Big(Int128{t.b[i].y}), Big(Int128{t.b[i].z})};
   }
   const Vector<Big> n = direction<Big>(va, vb, d);
   Big at_a[3], at_b[3];

@@ -35,7 +35,6 @@ class Commands:
     def __init__(self, root, build, programs, out):
         self.root, self.build, self.out = root, build, out
         self.compile, self.link = {}, {}
-        self.lock = threading.Lock()
         self.linker = ["-fuse-ld=lld"] if shutil.which("ld.lld") else []
         said = subprocess.run(
             ["ninja", "-C", build, "-t", "commands"], check=True, capture_output=True, text=True
@@ -70,30 +69,25 @@ class Commands:
     def precompiled(self, source, words):
         """A precompiled header of everything that the source and our headers include in angle brackets, compiled once
         for all mutants. Omits Highway's headers, which are included once for each instruction set."""
-        with self.lock:
-            said = subprocess.run(
-                [*words, "-E", "-dI", str(self.root / source)],
-                cwd=self.build,
-                capture_output=True,
-                text=True,
-                check=True,
-            ).stdout
-            names, ours = set(), True
-            for line in said.splitlines():
-                if place := re.match(r'# \d+ "[^"]*"((?: \d)*)$', line):
-                    ours = " 3" not in place.group(1)  # 3: a system header
-                elif ours and (name := re.match(r"#\s*include\s*(<(?!hwy/)[^>]+>)", line)):
-                    names.add(f"#include {name.group(1)}\n")
-            text = "".join(sorted(names))
-            header = (
-                self.out / "precompiled" / hashlib.sha256((" ".join(words) + text).encode()).hexdigest()[:16] / "all.h"
-            )
-            if not header.exists():
-                header.parent.mkdir(parents=True)
-                header.write_text(text, encoding="utf-8")
-                subprocess.run(
-                    [*words, "-x", "c++-header", str(header), "-o", f"{header}.gch"], cwd=self.build, check=True
-                )
+        said = subprocess.run(
+            [*words, "-E", "-dI", str(self.root / source)],
+            cwd=self.build,
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        names, ours = set(), True
+        for line in said.splitlines():
+            if place := re.match(r'# \d+ "[^"]*"((?: \d)*)$', line):
+                ours = " 3" not in place.group(1)  # 3: a system header
+            elif ours and (name := re.match(r"#\s*include\s*(<(?!hwy/)[^>]+>)", line)):
+                names.add(f"#include {name.group(1)}\n")
+        text = "".join(sorted(names))
+        header = self.out / "precompiled" / hashlib.sha256((" ".join(words) + text).encode()).hexdigest()[:16] / "all.h"
+        if not header.exists():
+            header.parent.mkdir(parents=True)
+            header.write_text(text, encoding="utf-8")
+            subprocess.run([*words, "-x", "c++-header", str(header), "-o", f"{header}.gch"], cwd=self.build, check=True)
         return ["-include", str(header)]
 
     def linked(self, program, objects, out):
@@ -121,7 +115,6 @@ class Runner:
             group["writes"]["program"] for group in groups.values() if "writes" in group
         }
         self.commands = Commands(root, build, programs, out)
-        self.lock = threading.Lock()
         self.kept = out / "baselines.json"
         self.seconds = json.loads(self.kept.read_text(encoding="utf-8")) if self.kept.exists() else {}
 
@@ -208,15 +201,14 @@ class Runner:
         """Five times the CPU seconds of a stage without a mutant, plus some margin. Without a mutant, the tests must
         pass."""
         key = " ".join([group["name"], *stage, *anew])
-        with self.lock:
-            if key not in self.seconds:
-                folder = self.out / "baseline"
-                folder.mkdir(exist_ok=True)
-                objects = self.built(stage, anew) + self.compile(group, anew, folder)
-                self.seconds[key] = self.time(group, self.link(group["program"], objects, folder / "tests"), "")
-                self.kept.write_text(json.dumps(self.seconds, indent=1), encoding="utf-8")
-                shutil.rmtree(folder)
-                print(f"{key}: pass without a mutant, in {self.seconds[key]:.1f} s", flush=True)
+        if key not in self.seconds:
+            folder = self.out / "baseline"
+            folder.mkdir(exist_ok=True)
+            objects = self.built(stage, anew) + self.compile(group, anew, folder)
+            self.seconds[key] = self.time(group, self.link(group["program"], objects, folder / "tests"), "")
+            self.kept.write_text(json.dumps(self.seconds, indent=1), encoding="utf-8")
+            shutil.rmtree(folder)
+            print(f"{key}: pass without a mutant, in {self.seconds[key]:.1f} s", flush=True)
         return self.patience + 5 * self.seconds[key]
 
     def built(self, stage, anew):

@@ -1,22 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Numbers for docs/results, from the records in docs/measurements. This module puts marks around each number that it
-returns as text, so that `unbacked` finds numbers without a record."""
+returns as text, so that a test finds numbers without a record."""
 import decimal
 import math
-import re
 
 import measurements
 from verdicts_apart import wilson
 
 BEGIN, END = "\x02", "\x03"
-# Digits and words that are not measured numbers: names, definitions, and the confidence of every interval.
-NAMES = re.compile(
-    r"float(32|64)|2012|ARM64|x86-64|x87|95 %|H[12]00|Debian 12|C\+\+|2\^12 ulps|ulps?\b|3-D|GTX 590|8800 GT"
-    r"|one rounding|one core|one pair|moller_1997|guigue_devillers_2003|Open3D|3d"
-)
-NUMBER = re.compile(
-    r"[0-9]+|\b(one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|fifteen|half|third|quarter|twice)\b"
-)
 
 
 class Unsupported(Exception):
@@ -24,12 +15,11 @@ class Unsupported(Exception):
 
 
 class Records:
-    """The newest record of each metric. `used` has the requested records, `values` their values. A test may replace
-    values through `changed`, by topic, metric and key."""
+    """The newest record of each metric. `used` has the requested records."""
 
     def __init__(self, folder=measurements.RECORDS):
         machines, topics = measurements.read(folder)
-        self.found, self.used, self.values, self.changed = {}, {}, {}, {}
+        self.found, self.used = {}, {}
         for name, topic in topics.items():
             for record in measurements.current(measurements.records(name, topic, machines)):
                 self.found[(name, record["metric"])] = record
@@ -40,8 +30,7 @@ class Records:
         return self.used.setdefault((topic, metric), self.found[(topic, metric)])
 
     def __call__(self, topic, metric, key="value"):
-        value = self.values[(topic, metric, key)] = self.record(topic, metric)[key]
-        return self.changed.get((topic, metric, key), value)
+        return self.record(topic, metric)[key]
 
 
 def require(truth, sentence):
@@ -55,13 +44,6 @@ def backed(text):
 
 def plain(text):
     return text.replace(BEGIN, "").replace(END, "")
-
-
-def unbacked(text):
-    """Returns: the numbers of a marked text without a record; code and link targets do not count."""
-    text = re.sub(f"{BEGIN}[^{END}]*{END}", " ", text)
-    text = re.sub(r"`[^`]*`|\]\([^)]*\)", " ", text)
-    return [found.group() for found in NUMBER.finditer(NAMES.sub(" ", text))]
 
 
 def digits(x, n=3, towards=None):

@@ -13,7 +13,6 @@
 #include "core/text.h"
 #include "core/whole.h"
 #include "fuzz/campaign/campaign_scene.h"
-#include "oracle/truth.h"
 #include "strata/pair_source.h"
 
 namespace graze::cli {

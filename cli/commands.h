@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "core/verdict.h"
 #include "core/whole.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/campaign_scene.h"
 #include "fuzz/campaign/shard.h"
 #include "fuzz/campaign/store_file.h"
 #include "fuzz/selected_lanes.h"
-#include "oracle/truth.h"
 
 namespace graze::cli {
 

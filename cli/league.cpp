@@ -19,7 +19,6 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/campaign.h"
-#include "fuzz/cost_estimate.h"
 #include "fuzz/files.h"
 #include "fuzz/league/league.h"
 #include "reports/league.h"

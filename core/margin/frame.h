@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 #include "core/exact/grid.h"
 #include "core/margin/directions.h"
@@ -52,14 +54,17 @@ GRAZE_HD Real greater(const Real& x, const Real& y) {
 
 GRAZE_HD inline Vec3<double> widen(const Vec3<float>& v) { return {double(v.x), double(v.y), double(v.z)}; }
 
-// Whether the difference of any two coordinates is exact in double. Coordinates are multiples of 2^low below
-// 2^(high + 24), so differences are integers of high - low + 25 bits, and a double holds 53 bits.
+// Whether the difference of any two coordinates is exact in double. Coordinates are multiples of 2^(low - 150) below
+// 2^(high - 126), so differences are integers of high - low + 25 bits, and a double holds 53 bits.
 GRAZE_HD inline bool differences_are_exact(const Pair& pair) {
-  int low = 1 << 12, high = -(1 << 12);
+  std::uint32_t low = 255, high = 0;
   const float* c = &pair.a[0].x;
   for (int i = 0; i < kCoordinates; ++i) {
-    int exponent;
-    if (exact::detail::mantissa_of(c[i], exponent) == 0) continue;
+    std::uint32_t bits;
+    memcpy(&bits, &c[i], sizeof bits);
+    bits &= 0x7fffffffu;
+    if (bits == 0) continue;
+    const std::uint32_t exponent = bits < 0x800000u ? 1u : bits >> 23;
     low = exponent < low ? exponent : low;
     high = exponent > high ? exponent : high;
   }

@@ -228,7 +228,8 @@ std::string what_rounding_decides(const DoublePair& pair, const Pair& stored, Ve
       return fmt::format("if only number {} were kept as {}, the verdict would be {}", i + 1, coordinates(pair)[i],
                          name(truth));
   }
-  return fmt::format("it rounds {} numbers; none of them decides alone", rounded);
+  return fmt::format("it rounds {} numbers, and no single one, kept as it is, would make the verdict {}", rounded,
+                     name(truth));
 }
 
 // Explains a float32 lane whose verdict is right for the pair as float32 stores it, or whose pair float32 cannot store.

@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "cli/run_graze.h"
 
 namespace graze::cli {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 class ForeignCode : public CommandTest {
  protected:
@@ -196,6 +199,33 @@ TEST_F(ForeignCode, OptionsOfSubjectsAreWithinBounds) {
   for (const std::string seconds : {"nan", "inf", "-1", "0", "1e9", "1s"})
     expect_error("graze check pair.txt --subject s=cmd:true --subject-timeout=" + seconds, 2, {"0.001", "86400"});
   expect_error("graze check pair.txt --subject s=$(printf 'x%.0s' $(seq 100000)).so", 1, {"File name too long"});
+}
+
+TEST_F(ForeignCode, FlagsAreForCodeThatGrazeCompiles) {
+  expect_done(
+      "printf 'int intersects(const float* a, const float* b) { return a[0] < b[0] + EPS; }' > m.c && "
+      "cc -shared -fPIC -DEPS=1 m.c -o m.so");
+  for (const std::string what : {"./m.so", "'cmd:while read l; do echo 1; done'"})
+    expect_error("graze fuzz --pairs 20 --subject m=" + what + " --flags=-DEPS=1 --out none", 2, {"--flags"});
+  expect_done(
+      "graze fuzz --pairs 20 --subject m=./m.so --subject s=./m.c --flags=-DEPS=2 --lanes '[ms]/f32/cpu' --out c");
+  const Json subjects = shell.json("c/summary.json")["spec"]["subjects"];
+  EXPECT_EQ(subjects[0]["flags"], Json::array());
+  EXPECT_EQ(subjects[1]["flags"], Json::array({"-DEPS=2"}));
+}
+
+TEST_F(ForeignCode, ALongTableOrNameInCudaCodeIsNoCrash) {
+  std::string table = "__constant__ float t[4000] = {0";
+  for (int i = 1; i < 4000; ++i) table += ", " + std::to_string(i % 10) + ".5f";
+  std::ofstream(shell.folder / "t.cu") << table +
+                                              "};\n__device__ bool meet(const float a[9], const float b[9]) { "
+                                              "return a[0] <= b[0] + t[(int)a[1] & 1023]; }\n";
+  std::ofstream(shell.folder / "e.cu") << "#error " << std::string(200'000, 'a') << '\n';
+  std::ofstream(shell.folder / "small.cu")
+      << "__device__ bool meet(const float a[9], const float b[9]) { return a[0] > b[0]; }\n";
+  if (shell("graze lanes --subject s=./small.cu:meet").status != 0) GTEST_SKIP() << "no NVRTC";
+  expect_done("graze fuzz --pairs 20 --subject t=./t.cu:meet --lanes 't/*' --executor twin --out t");
+  expect_error("graze fuzz --pairs 20 --subject e=./e.cu:meet --lanes 'e/*' --executor twin --out e", 2, {"e.cu"});
 }
 
 TEST_F(ForeignCode, WhatCannotBeWrittenForACompilerIsSaidWithItsReason) {

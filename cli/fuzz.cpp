@@ -331,7 +331,7 @@ void add_fuzz(CLI::App& app, int& status) {
       "--strata is given")
       ->expected(1, 2)
       ->excludes("--scene");
-  add_exact_input(*command, options->exact_input);
+  add_exact_input(*command, options->exact_input)->needs("--mesh");
   static_assert(static_cast<int>(fuzz::EngineChoice::automatic) == 0 &&
                 static_cast<int>(fuzz::EngineChoice::cpu) == 1 && static_cast<int>(fuzz::EngineChoice::gpu) == 2);
   add_valued(*command, "--engine", options->engine, "auto|cpu|gpu",

@@ -90,6 +90,7 @@ void open_subjects(const LaneOptions& options) {
   };
   std::string why_not;
   const bool on_device = options.executor != fuzz::Executor::twin && cuda::open_device(why_not);
+  bool compiled = false;
   for (const std::string& text : options.subjects) {
     expect_utf8("--subject", text);
     subjects::Wanted wanted = subjects::parse_subject(text);
@@ -97,7 +98,11 @@ void open_subjects(const LaneOptions& options) {
     wanted.timeout = options.timeout;
     wanted.toolchains = selected(wanted.name);
     subjects::open(wanted, on_device);
+    const std::string& kind = subjects::opened(wanted.name)->kind;
+    compiled |= kind == "source" || kind == "cuda";
   }
+  if (!options.flags.empty() && !compiled)
+    throw UsageError("--flags: Graze compiles none of these subjects, so flags would have no effect");
   for (const Lane* lane : subjects::published_algorithms()) {
     const std::string id(lane->info->id);
     subjects::Wanted wanted{id, "published", {}, options.timeout};

@@ -43,7 +43,8 @@ int plan(const PlanOptions& options) {
   fuzz::Campaign campaign;
   campaign.under_test = &under_test;
   Json scene;
-  campaign.sources = drawn(options, &scene).sources;
+  const strata::SceneSources from = drawn(options, &scene);
+  campaign.sources = from.sources;
   campaign.spec = fuzz::campaign_spec(campaign);
   if (!scene.is_null()) campaign.spec["scene"] = scene;
   const bool gpu = options.gpus > 0;
@@ -72,6 +73,8 @@ int plan(const PlanOptions& options) {
                  {"shard_seconds", found.shard_seconds},
                  {"shard_bytes", found.shard_bytes},
                  {"merged_bytes", found.merged_bytes}};
+    for (const strata::LeftOut& row : from.left_out)
+      json["strata_left_out"].push_back({{"stratum", row.id}, {"why", row.why}});
     fuzz::add_left_out(json, under_test);
     std::cout << json.dump(1) << '\n';
     return 0;
@@ -89,6 +92,7 @@ int plan(const PlanOptions& options) {
       time_of(found.seconds), reports::grouped(workers), worker, workers == 1 ? "" : "s",
       reports::grouped(found.shards), time_of(found.shard_seconds), found.shards, size_of(found.shard_bytes),
       size_of(found.shard_bytes * static_cast<double>(found.shards)), size_of(found.merged_bytes));
+  std::cout << left_out_text(from.left_out);
   return 0;
 }
 

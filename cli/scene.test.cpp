@@ -58,6 +58,8 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
              {"\nLeft out, because the scene cannot contain them:\n  thesis: its triangles have fixed coordinates",
               "\n  extreme_scale: your coordinates stay within 0 … 201.125 units, and your triangles' longest edges "
               "within "});
+  expect_out("graze plan --scene hills.toml --pairs 1e6 --lanes 'moller*/f32/cpu'",
+             {"\nLeft out, because the scene cannot contain them:\n  thesis: its triangles have fixed coordinates"});
   expect_done(fuzz + "--threads 2 --out two && diff one/summary.json two/summary.json && diff -r one/cases two/cases");
   const Json summary = json("one/summary.json");
   EXPECT_EQ(summary["spec"]["scene"]["left_out"]["far_from_origin"], "your coordinates stay within 0 … 201.125 units");

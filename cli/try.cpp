@@ -30,6 +30,7 @@
 #include "core/text.h"
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/campaign/store_file.h"
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimised_cases.h"
 #include "fuzz/own_files.h"
@@ -110,7 +111,7 @@ void expect_mesh_or_scene(const std::string& where) {
 // Renames the directory if it holds an earlier run on the same code or file, so that a run after an edit can use the
 // same name.   Returns: the new name; empty if there was nothing to rename.
 std::string put_aside(const std::string& out, const Json& spec) {
-  if (!fuzz::has_database(out)) return "";
+  if (!fuzz::has_database(out) || fuzz::is_empty_store(out)) return "";
   const Json earlier = fuzz::recorded_spec(out);
   const auto source_of = [](const Json& of) {
     const Json rows = of.value("subjects", Json::array());
@@ -331,7 +332,7 @@ int try_source(const TryOptions& options) {
   write_report(fuzz.out);
   write_junit(fuzz, under_test, outcome.summary);
   answer.costs = call_costs(own, campaign.sources);
-  answer.epsilon = epsilon_of_code(own, fuzz.out);
+  answer.epsilon = epsilon_of_code(own, campaign.sources, fuzz.out);
   answer.effect = epsilon_effect(own, campaign.sources);
   answer.again = with_more_pairs(options, fuzz);
   fmt::print("{}", options.json ? to_json(answer, under_test).dump(1) + '\n' : text_of(answer, output_screen()));

@@ -29,6 +29,7 @@ constexpr std::size_t kPairsCalled = 4096;
 constexpr int kPassesOfCalls = 101;
 constexpr int kLinesOfScreen = 30, kLinesOfCosts = 4;
 constexpr std::size_t kMostNamed = 3;        // numbers that may be the epsilon
+constexpr std::size_t kMostTried = 6;        // of them, each replaced alone
 constexpr double kLargestEpsilon = 0.1;      // a larger constant is not an epsilon
 constexpr std::size_t kMostStrataNamed = 6;  // strata that were left out
 
@@ -90,6 +91,24 @@ std::string exact_in_words(const Lane& exact, const reports::ReportLane& own, co
                          : "");
 }
 
+// The effect of a negligible number in place of all of these; nothing if the code cannot be rebuilt so.
+std::optional<reports::EpsilonEffect> effect_of(const Lane& own, const std::vector<subjects::Epsilon>& numbers,
+                                                const std::vector<strata::PairSource>& sources) {
+  const auto changed = numbers.empty() ? nullptr : subjects::changed(own, {.negligible = numbers});
+  if (!changed) return std::nullopt;
+  reports::EpsilonEffect effect;
+  const std::filesystem::path& file = subjects::opened(own.lane_name().subject)->file;
+  for (const subjects::Epsilon& number : numbers)
+    effect.named += (effect.named.empty() ? "" : " and ") + epsilon_in_words(file, number);
+  const auto found = analysis::verdicts_apart({{&own, &own}, {own.decide, *changed}}, sources, 0,
+                                              [](const AnyPair&, const AnyPair&) { return false; });
+  for (const analysis::VerdictsApart& of_source : found) {
+    effect.mended += of_source.mended;
+    effect.broken += of_source.broken;
+  }
+  return effect;
+}
+
 std::string left_out_in_words(const std::vector<strata::LeftOut>& left_out) {
   std::vector<std::string> ids;
   for (const strata::LeftOut& row : left_out) ids.push_back(row.id);
@@ -120,7 +139,8 @@ CallCosts call_costs(const Lane& own, const std::vector<strata::PairSource>& sou
           pairs.size()};
 }
 
-OwnEpsilon epsilon_of_code(const Lane& own, const std::string& directory) {
+OwnEpsilon epsilon_of_code(const Lane& own, const std::vector<strata::PairSource>& sources,
+                           const std::string& directory) {
   if (const std::string why = subjects::why_not_rebuilt(own); !why.empty())
     return {"", "", fmt::format("Graze cannot change its epsilon: {}.", why)};
   const std::string tune = fmt::format("graze tune {} --from {}", own.id, path_word(directory));
@@ -131,6 +151,14 @@ OwnEpsilon epsilon_of_code(const Lane& own, const std::string& directory) {
   std::erase_if(candidates, [&](const subjects::Epsilon& e) {
     return (e.value && (*e.value <= 0 || *e.value > kLargestEpsilon)) || !tunable(own, e.name);
   });
+  if (candidates.size() > 1) {  // the one whose replacement mends most comes first
+    std::vector<std::uint64_t> mended(std::min(candidates.size(), kMostTried));
+    for (std::size_t i = 0; i < mended.size(); ++i) {
+      if (const auto effect = effect_of(own, {candidates[i]}, sources)) mended[i] = effect->mended;
+    }
+    const auto first = candidates.begin() + (std::max_element(mended.begin(), mended.end()) - mended.begin());
+    std::rotate(candidates.begin(), first, first + 1);
+  }
   OwnEpsilon found;
   if (!candidates.empty()) found.tune = fmt::format("{} --epsilon {}", tune, shell_word(candidates[0].name));
   if (candidates.empty()) candidates = subjects::small_numbers_in(text);
@@ -149,19 +177,7 @@ OwnEpsilon epsilon_of_code(const Lane& own, const std::string& directory) {
 std::optional<reports::EpsilonEffect> epsilon_effect(const Lane& own, const std::vector<strata::PairSource>& sources) {
   std::vector<subjects::Epsilon> numbers = subjects::small_numbers(own);
   if (const auto obvious = numbers.empty() ? std::nullopt : tunable(own, "")) numbers = {obvious->epsilon};
-  const auto changed = numbers.empty() ? nullptr : subjects::changed(own, {.negligible = numbers});
-  if (!changed) return std::nullopt;
-  reports::EpsilonEffect effect;
-  const std::filesystem::path& file = subjects::opened(own.lane_name().subject)->file;
-  for (const subjects::Epsilon& number : numbers)
-    effect.named += (effect.named.empty() ? "" : " and ") + epsilon_in_words(file, number);
-  const auto found = analysis::verdicts_apart({{&own, &own}, {own.decide, *changed}}, sources, 0,
-                                              [](const AnyPair&, const AnyPair&) { return false; });
-  for (const analysis::VerdictsApart& of_source : found) {
-    effect.mended += of_source.mended;
-    effect.broken += of_source.broken;
-  }
-  return effect;
+  return effect_of(own, numbers, sources);
 }
 
 std::string case_of(const Answer& answer, const Json& kind) {

@@ -39,7 +39,10 @@ struct OwnEpsilon {
   std::string tune;     // the command that tunes it; empty if `graze tune` would refuse it
   std::string why_not;  // a sentence: why Graze cannot change it; empty if it can, or if none was found
 };
-OwnEpsilon epsilon_of_code(const Lane& own, const std::string& directory);
+// If several numbers may be the epsilon, `tune` names the one whose replacement by a negligible number mends most
+// pairs.
+OwnEpsilon epsilon_of_code(const Lane& own, const std::vector<strata::PairSource>& sources,
+                           const std::string& directory);
 
 // Builds the code again with a negligible number in place of its obvious epsilon, or of all small numbers, and runs it
 // on the pairs. Returns nothing if there is no such number, or no C or C++ source.   Throws: Stopped.

@@ -205,6 +205,8 @@ void view(const LaneOptions& options, const std::string& what, const std::string
   }
   fuzz::SelectedLanes own = lanes_of_own_code(options, what);
   Viewed viewed = viewed_of(what, mesh, exact_input, own);
+  if (!options.subjects.empty() && viewed.pairs.empty())
+    throw UsageError("--subject: the page would store no pair, and so no verdict of your code; name pairs to show");
   add_verdicts(own, viewed);
   viewed.random = random;
   write_result(out, reports::viewer_page(viewed), fuzz::NamedBy::user);
@@ -240,7 +242,7 @@ void add_view(CLI::App& app, int&) {
       ->transform(whole_number(1, reports::kMostViewedTriangles))
       ->excludes(pairs);
   const auto exact_input = std::make_shared<bool>(false);
-  add_exact_input(*command, *exact_input);
+  add_exact_input(*command, *exact_input)->needs(pairs);
   const auto own_code = std::make_shared<LaneOptions>();
   add_subject_options(*command, *own_code);
   add_resubject_option(*command, *own_code);

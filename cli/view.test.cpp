@@ -38,6 +38,24 @@ TEST_F(ViewCommand, OnePageOfFewMegabytesThatNamesNoOtherFile) {
   EXPECT_EQ(held["pairs"][0]["bits"].get<std::string>().substr(0, 24), "40000000c000000040800000");  // 2 -2 4
 }
 
+TEST_F(ViewCommand, CodeIsRefusedIfThePageStoresNoPair) {
+  expect_done("printf 'int intersects(const float* a, const float* b) { return a[0] < b[0]; }' > m.c");
+  for (const char* random : {"", "--random 5 "})
+    expect_error(std::string("graze view --subject m=./m.c --out none.html ") + random, 2, {"--subject"});
+  expect_done("test ! -e none.html && graze view thesis_special:1:0 --subject m=./m.c");
+}
+
+TEST_F(ViewCommand, RefusesNumbersAsOtherVerbsDo) {
+  std::ofstream(shell.folder / "near.pairs")
+      << "0 0 1 1 0 1 0 1 1  0 0 1.00000000001 1 0 1.00000000001 0 1 1.00000000001\n";
+  for (const char* what : {"near.pairs", "."})
+    expect_error(std::string("graze view --exact-input --out v.html ") + what, 2, {"near.pairs:1", "--exact-input"});
+  expect_error("graze view --exact-input", 2, {"--exact-input", "WHAT"});
+  std::ofstream(shell.folder / "less.pairs")
+      << "0x1p-100000 0 0  1 0 0  0 1 0   0 0 1  1 0 1  0 1 1 | coordinates=f64\n";
+  expect_error("graze view less.pairs", 1, {"less.pairs:1", "exponent", "0x1p-100000"});
+}
+
 TEST_F(ViewCommand, StoredVerdictsOfAllLanesCanariesAmongThem) {
   expect_done("graze view --out all.html");
   const nlohmann::json replay = data("all.html")["replay"];

@@ -136,12 +136,12 @@ std::string band_sentence(const std::vector<const Json*>& lanes, std::uint64_t p
   if (widest == 0) return "No sign differs.";
   return fmt::format(
       "Signs differ only where both values are at most {} bounds of their rounding error away from zero ({}). "
-      "Among {} comparisons on {}, no sign differs farther from zero{}. At 95 % confidence, such a difference "
+      "Among {} comparisons on {}, no sign differs farther from zero{}. At 95 % confidence, such a difference{} "
       "occurs on fewer than {} of the pairs.",
       rounded_up(widest, 2), where, grouped(asked), counted(pairs, "pair"),
       beyond_range == 0 ? ""
                         : fmt::format(", except in {} comparisons whose error has no bound", grouped(beyond_range)),
-      rounded_up(analysis::upper_bound(0, pairs), 2));
+      beyond_range == 0 ? "" : ", where the error has a bound,", rounded_up(analysis::upper_bound(0, pairs), 2));
 }
 
 std::string mending_sentence(const Json& json) {

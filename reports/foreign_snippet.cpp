@@ -8,6 +8,7 @@
 
 #include "analysis/lane_trace.h"
 #include "backends/backends.h"
+#include "core/pattern.h"
 #include "core/plain_file.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
@@ -78,7 +79,7 @@ std::string calling(std::string_view real, std::string_view function) {
 bool returns_bool(const std::filesystem::path& source, const std::string& function) {
   std::string why;
   const std::string text = plain_file(source, why).value_or("");
-  return std::regex_search(text, std::regex("\\b(_Bool|bool)\\s+" + function + "\\s*\\("));
+  return contains(text, std::regex("\\b(_Bool|bool)\\s+" + function + "\\s*\\("));
 }
 
 // The flags of the lane's variant and the user's flags, each with a leading space.

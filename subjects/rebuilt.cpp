@@ -15,6 +15,7 @@
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
+#include "core/pattern.h"
 #include "core/stop.h"
 #include "core/text.h"
 #include "subjects/cuda_code.h"
@@ -180,7 +181,7 @@ bool selects_by_build(const Lane& lane) {
     const SourceFiles all = source_files(subject);
     return (!all.whole && subject.kind != "published") ||  // Graze's own sources include from its root
            std::any_of(all.files.begin(), all.files.end(),
-                       [](const fs::path& file) { return std::regex_search(code_in(file), names); });
+                       [](const fs::path& file) { return contains(code_in(file), names); });
   } catch (const std::runtime_error&) {  // a file is too large
     return true;
   }
@@ -194,7 +195,7 @@ std::optional<bool> may_have_epsilon(const Lane& lane) {
   try {
     const std::string text = code_in(subject->file);
     return !small_numbers_in(text).empty() ||  // throws for a large text
-           std::regex_search(text, std::regex("#[ \t]*include[ \t]*\"|epsilon", std::regex::icase));
+           contains(text, std::regex("#[ \t]*include[ \t]*\"|epsilon", std::regex::icase));
   } catch (const std::runtime_error&) {  // the file is missing or too large
     return std::nullopt;
   }
@@ -271,7 +272,7 @@ std::string in_doubles(std::string_view source) {
 
 bool is_all_in_doubles(const Lane& lane) {
   const std::string text = source_as_built(lane);
-  return !text.empty() && !std::regex_search(text, std::regex("#[ \t]*include[ \t]*\"|\\b_mm|\\bvector_size\\b"));
+  return !text.empty() && !contains(text, std::regex("#[ \t]*include[ \t]*\"|\\b_mm|\\bvector_size\\b"));
 }
 
 }  // namespace graze::subjects

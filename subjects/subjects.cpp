@@ -106,6 +106,7 @@ Opened parsed(const Wanted& wanted) {
     if (const std::string missing = missing_program(wanted.what.substr(kCommand.size())); !missing.empty())
       throw std::runtime_error(fmt::format("--subject {}: there is no program {}", wanted.name, shown(missing)));
     result.kind = "command";
+    result.wanted.flags.clear();  // nothing compiles it
     result.code = hash_of_command(wanted.what.substr(kCommand.size()));
     for (const HashedFile& named : result.code.files) expect_visible(wanted.name, named.file);
     result.hash = result.code.hash;
@@ -143,8 +144,10 @@ Opened parsed(const Wanted& wanted) {
   const std::string bytes = wanted.builds.empty() ? code_in(result.file) : "";
   result.code = {fnv1a(bytes), "the libraries that it loads"};  // replaced when a source is built
   result.hash = result.code.hash;
-  if (result.kind == "library" || result.kind == "opencl")
+  if (result.kind == "library" || result.kind == "opencl") {
+    result.wanted.flags.clear();
     result.content = std::make_shared<SealedCopy>(result.file.filename().string(), bytes);
+  }
   return result;
 }
 
@@ -348,7 +351,7 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded,
   if (Entry* const there = find_entry(wanted.name)) {
     const bool more = wish.kind == kPublished || runs_on_host(there->opened);
     if (there->opened.hash == wish.hash && there->opened.wanted.what == wanted.what &&
-        there->opened.wanted.flags == wanted.flags)
+        there->opened.wanted.flags == wish.wanted.flags)
       return more ? add_toolchain_lanes(*there, wanted.toolchains, kept) : void();
     throw UsageError(
         fmt::format("--subject {0}: another subject has the name {0} already; choose another", wanted.name));

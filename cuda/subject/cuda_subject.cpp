@@ -15,6 +15,7 @@
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
+#include "core/pattern.h"
 #include "core/plain_file.h"
 #include "core/programs/kept_file.h"
 #include "core/programs/run_program.h"
@@ -57,13 +58,17 @@ extern "C" __global__ void graze_subject_kernel(const {0}* coordinates, unsigned
 
 // The first error in the compiler's log, as "FILE:LINE: message".
 std::string first_error(const std::string& log) {
-  static const std::regex kError(R"(([^\n]*?)\((\d+)\): (?:catastrophic )?error: ([^\n]*))"),
-      kOther("[^\n]*error[^\n]*");
-  std::smatch match;
-  if (std::regex_search(log, match, kError))
-    return fmt::format("{}:{}: {}", match[1].str(), match[2].str(), match[3].str());
-  if (std::regex_search(log, match, kOther)) return match[0];
-  return log.substr(0, log.find('\n'));
+  static const std::regex kError(R"((.*?)\((\d+)\): (?:catastrophic )?error: (.*))");
+  std::istringstream lines(log);
+  std::string first, other;
+  for (std::string line; std::getline(lines, line);) {
+    line.resize(std::min(line.size(), kMostMatched));
+    if (std::smatch match; matches(line, match, kError))
+      return fmt::format("{}:{}: {}", match[1].str(), match[2].str(), match[3].str());
+    if (first.empty()) first = line;
+    if (other.empty() && line.find("error") != line.npos) other = line;
+  }
+  return other.empty() ? first : other;
 }
 
 std::string with_lines(const std::string& text, const fs::path& source) {
@@ -80,7 +85,7 @@ std::string wrapped(const std::string& text, const fs::path& source, const std::
 // when no function with that name takes two triangles; the message then names the type that was found.
 Scalar scalar_of(const std::string& text, const fs::path& source, const std::string& function,
                  const std::function<std::string(const std::string& whole)>& compile) {
-  if (!std::regex_match(function, std::regex("(::)?[A-Za-z_]\\w*(::[A-Za-z_]\\w*)*")))
+  if (!matches(function, std::regex("(::)?[A-Za-z_]\\w*(::[A-Za-z_]\\w*)*")))
     throw UsageError(fmt::format("{}: expected the name of a function, found '{}'", source.string(), function));
   std::string log;
   for (const Scalar scalar : {Scalar::f32, Scalar::f64}) {
@@ -109,7 +114,8 @@ Scalar scalar_of(const std::string& text, const fs::path& source, const std::str
     std::smatch match;
     if (said.find("is undefined") != said.npos || said.find("has no member") != said.npos)
       throw UsageError(expected + "; found no function of that name");
-    if (std::regex_search(said, match, kType))
+    const std::string type = said.substr(std::min(said.find("incomplete type"), said.size()), kMostMatched);
+    if (std::regex_search(type, match, kType))
       throw UsageError(
           fmt::format("{}; found {}", expected, std::regex_replace(match[1].str(), std::regex("__nv_bool"), "bool")));
     if (said.find("overloaded") != said.npos)

@@ -485,6 +485,14 @@ std::int64_t StoreFile::put(const PairRange& range, const StoredCounts& counts,
   });
 }
 
+bool is_empty_store(const fs::path& directory) {
+  const fs::path file = directory / kDatabase;
+  return in_one_line(file, [&] {
+    OpenedToRead store(directory);
+    return is_fresh(store.database, file);
+  });
+}
+
 StoreSpec recorded_store(const fs::path& directory) {
   const fs::path file = directory / kDatabase;
   if (!fs::exists(file)) throw std::runtime_error(cannot("read", file, ENOENT));

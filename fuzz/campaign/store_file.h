@@ -83,6 +83,9 @@ std::string file_bytes(SQLite::Database& database);
 // The first place in which two specs differ, with both values: `seed is 1, not 2`.
 std::string first_difference(const Json& expected, const Json& found);
 
+// Whether the existing store holds no campaign yet.   Throws: as recorded_store.
+bool is_empty_store(const std::filesystem::path& directory);
+
 // Reads the spec of an existing store; its `sources` are empty.
 // Throws: DamagedStore; std::runtime_error in the same cases as StoreFile.
 StoreSpec recorded_store(const std::filesystem::path& directory);

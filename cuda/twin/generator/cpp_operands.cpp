@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <regex>
 
+#include "core/pattern.h"
+
 namespace graze::cuda::twin {
 namespace {
 
@@ -66,9 +68,9 @@ std::string Operands::value(const std::string& name, const std::string& type) co
   static const std::regex kF32("0[fF]([0-9a-fA-F]{8})"), kF64("0[dD]([0-9a-fA-F]{16})"),
       kInteger("-?(0x[0-9a-fA-F]+U?|[0-9]+U?)");
   std::smatch match;
-  if (std::regex_match(name, match, kF32)) return of_bits(spelled, "f32", match[1]);
-  if (std::regex_match(name, match, kF64)) return of_bits(spelled, "f64", match[1]);
-  if (type[0] != 'f' && std::regex_match(name, kInteger))
+  if (matches(name, match, kF32)) return of_bits(spelled, "f32", match[1]);
+  if (matches(name, match, kF64)) return of_bits(spelled, "f64", match[1]);
+  if (type[0] != 'f' && matches(name, kInteger))
     return fmt::format("static_cast<{}>({})", spelled,
                        name.find("0x") == std::string::npos ? name + "ll" : name + "ull");
   fail("unknown operand " + name);
@@ -89,7 +91,7 @@ std::string Operands::assign(const std::string& destination, const std::string& 
 std::string Operands::address(const std::string& memory) const {
   static const std::regex kMemory(R"(\[([%\w$]+)(?:\+(-?\d+))?\])");
   std::smatch match;
-  if (!std::regex_match(memory, match, kMemory)) fail("unknown address " + memory);
+  if (!matches(memory, match, kMemory)) fail("unknown address " + memory);
   const std::string base = match[1], offset = match[2].matched ? match[2].str() : "0";
   for (const auto* list : {&kernel_.parameters, &kernel_.returned}) {
     for (std::size_t p = 0; p < list->size(); ++p) {

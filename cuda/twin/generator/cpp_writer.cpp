@@ -8,6 +8,7 @@
 #include <ostream>
 #include <regex>
 
+#include "core/pattern.h"
 #include "cuda/twin/generator/cpp_operands.h"
 #include "cuda/twin/generator/ptx_writer.h"
 
@@ -88,7 +89,7 @@ struct KernelName {
 
 KernelName parsed(const std::string& mangled) {
   std::smatch match;
-  if (!std::regex_match(mangled, match, std::regex(R"(_ZN5graze4cuda\d+[a-z_]+?\d+([a-z_]+_pairs)ILi(\d+)E([fd])E.*)")))
+  if (!matches(mangled, match, std::regex(R"(_ZN5graze4cuda\d+[a-z_]+?\d+([a-z_]+_pairs)ILi(\d+)E([fd])E.*)")))
     return {identifier(mangled)};
   return {match[1], std::stoi(match[2]), match[3].str()[0]};
 }

@@ -78,6 +78,11 @@ TEST(TwinGenerator, RefusesWhatItCannotRead) {
     }
   };
   EXPECT_EQ(of_file("frobnicate"), "f.ptx:2: expected a kernel: frobnicate");
+  const std::string name(200'000, 'a');  // longer than the stack of a matcher that recurses for each character
+  EXPECT_LT(of_file(".visible .func " + name + "()").size(), 300u);
+  for (const std::string& line : {"mov.u32 %" + name + ", 1;", "bra " + name + ";", ".loc 1 " + name + ";",
+                                  "st.global.u32 [%" + name + "], 1;", ".reg .b32 %" + name + ";"})
+    EXPECT_FALSE(complaint(line).empty()) << line.substr(0, 20);
   EXPECT_EQ(of_file(".shared .align 4 .b8 memory[64];"),
             "f.ptx:2: expected a kernel: .shared .align 4 .b8 memory[64];");
   EXPECT_EQ(of_file(".const .align 8 .u64 at[1] = {other};"),
@@ -157,6 +162,14 @@ TEST(TwinGenerator, ReadsFunctionsTablesAndScopes) {
   ASSERT_EQ(module.tables.size(), 2u);
   EXPECT_EQ(module.tables[0].bytes, (std::vector<std::uint8_t>{1, 0, 255, 128, 0, 0, 0, 0}));
   EXPECT_EQ(module.tables[1].bytes, (std::vector<std::uint8_t>{0, 0, 0x80, 0x3f}));
+  std::string values = "0f3F800000";
+  for (int i = 1; i < 100'000; ++i) values += ", 0f3F800000";
+  std::istringstream large(".version 9.0\n.target sm_75\n.address_size 64\n.const .align 4 .f32 table[100000] = {" +
+                           values + "};\n");
+  const Module of_large = read_ptx(large, "large.ptx");
+  ASSERT_EQ(of_large.tables.size(), 1u);
+  EXPECT_EQ(of_large.tables[0].bytes.size(), 400'000u);
+  EXPECT_EQ(of_large.tables[0].bytes[399'999], 0x3f);
   const Kernel &kernel = module.kernels[1], &function = module.kernels[2];
   EXPECT_TRUE(function.is_function && function.declared_before);
   ASSERT_EQ(function.returned.size(), 1u);

@@ -8,6 +8,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "core/pattern.h"
+
 namespace graze::cuda::twin {
 namespace {
 
@@ -41,6 +43,7 @@ std::string without_spaces(std::string text) {
 }
 
 constexpr std::size_t kMostEntries = 1 << 20;  // entries of a table
+constexpr std::size_t kMostShown = 200;        // characters of a statement in an error
 
 class Reader {
  public:
@@ -71,7 +74,8 @@ class Reader {
   }
 
   [[noreturn]] void fail(const std::string& why) const {
-    throw PtxError(module_.path + ":" + std::to_string(line_) + ": " + why + (text_.empty() ? "" : ": " + text_));
+    throw PtxError(module_.path + ":" + std::to_string(line_) + ": " + why +
+                   (text_.empty() ? "" : ": " + text_.substr(0, kMostShown)));
   }
 
   // Reads the next line without its comment. Two comments hold information that is nowhere else in the PTX: nvcc's
@@ -86,8 +90,8 @@ class Reader {
     if (const auto comment = line.find("//"); comment != std::string::npos) {
       std::smatch match;
       const std::string remark = line.substr(comment);
-      if (std::regex_match(remark, match, kVersion)) module_.toolkit = match[1];
-      if (std::regex_match(remark, match, kFrom)) inlined_at_ = place(match, 1);
+      if (matches(remark, match, kVersion)) module_.toolkit = match[1];
+      if (matches(remark, match, kFrom)) inlined_at_ = place(match, 1);
       line.resize(comment);
     }
     text_ = trimmed(line);
@@ -118,25 +122,25 @@ class Reader {
     static const std::regex kVersion(R"(\.version\s+(\S+))"), kTarget(R"(\.target\s+([^\s,]+).*)"),
         kFile(R"re(\.file\s+(\d+)\s+"([^"]*)".*)re"), kEntry(R"((?:\.visible\s+)?\.entry\s+([\w$]+)\s*\(\)?)"),
         kFunction(R"((\.visible\s+|\.weak\s+|\.extern\s+)?\.func\s+(?:\((.*?)\)\s*)?([\w$]+)\s*\(?\)?)"),
-        kTable(R"((?:\.visible\s+|\.weak\s+)?\.(?:const|global)\s+.*)");
+        kTable(R"((?:\.visible\s+|\.weak\s+)?\.(?:const|global)\s)");
     std::smatch match;
-    if (std::regex_match(text_, match, kVersion)) {
+    if (matches(text_, match, kVersion)) {
       module_.version = match[1];
-    } else if (std::regex_match(text_, match, kTarget)) {
+    } else if (matches(text_, match, kTarget)) {
       module_.target = match[1];
     } else if (text_.starts_with(".address_size")) {
       if (!text_.ends_with("64")) fail("expected 64-bit addresses");
-    } else if (std::regex_match(text_, match, kFile)) {
+    } else if (matches(text_, match, kFile)) {
       module_.files[std::stoi(match[1])] = match[2];
     } else if (text_.starts_with(".section")) {
       in_debug_section_ = true;  // the rest of the file is debug information
-    } else if (std::regex_match(text_, match, kEntry)) {
+    } else if (matches(text_, match, kEntry)) {
       module_.kernels.emplace_back();
       kernel_ = &module_.kernels.back();
       kernel_->name = match[1];
       kernel_->line = line_;
       source_ = {};
-    } else if (std::regex_match(text_, match, kFunction)) {
+    } else if (matches(text_, match, kFunction)) {
       module_.kernels.emplace_back();
       kernel_ = &module_.kernels.back();
       kernel_->name = match[3];
@@ -145,7 +149,7 @@ class Reader {
       kernel_->linkage = match[1].matched ? trimmed(match[1].str()) + " " : "";
       if (match[2].matched) kernel_->returned.push_back(parameter_or_fail(trimmed(match[2].str())));
       source_ = {};
-    } else if (std::regex_match(text_, kTable)) {
+    } else if (std::regex_search(text_, kTable, std::regex_constants::match_continuous)) {
       join_lines();
       read_table();
     } else {
@@ -156,23 +160,25 @@ class Reader {
   // Reads a table, such as .const .align 4 .b8 NAME[12] = {0, 0, 128, 63, …}; or .global .align 4 .u32 NAME = 7;
   void read_table() {
     static const std::regex kTable(
-        R"((?:\.visible |\.weak )?\.(?:const|global)\s+\.align\s+(\d+)\s+\.([busf])(\d+)\s+([\w$]+)(?:\[(\d+)\])?(?:\s*=\s*(.*))?)");
+        R"((?:\.visible |\.weak )?\.(?:const|global)\s+\.align\s+(\d+)\s+\.([busf])(\d+)\s+([\w$]+)(?:\[(\d+)\])?)");
     static const std::regex kHex("0[fFdD]([0-9a-fA-F]+)"), kNumber("-?[0-9]+");
     Table table;
     table.declaration = text_.substr(0, text_.size() - 1);
     std::smatch match;
-    if (!std::regex_match(table.declaration, match, kTable)) fail("expected a table of numbers");
+    const std::size_t equals = std::min(table.declaration.find('='), table.declaration.size());
+    const std::string head = trimmed(table.declaration.substr(0, equals));
+    if (!matches(head, match, kTable)) fail("expected a table of numbers");
     table.align = std::stoi(match[1]);
     table.name = match[4];
     const std::size_t size = std::stoul(match[3]) / 8, count = match[5].matched ? std::stoul(match[5]) : 1;
     if (size < 1 || size > 8 || count > kMostEntries) fail("expected a table of numbers of 8 to 64 bits");
-    std::string values = match[6];
+    std::string values = equals < table.declaration.size() ? trimmed(table.declaration.substr(equals + 1)) : "";
     if (values.starts_with('{')) values = values.substr(1, values.size() - 2);
     for (const std::string& value : values.empty() ? std::vector<std::string>() : split(values, ',')) {
       std::uint64_t bits = 0;
-      if (std::regex_match(value, match, kHex)) {
+      if (matches(value, match, kHex)) {
         bits = std::stoull(match[1], nullptr, 16);
-      } else if (std::regex_match(value, kNumber)) {
+      } else if (matches(value, kNumber)) {
         bits = value[0] == '-' ? 0 - std::stoull(value.substr(1)) : std::stoull(value);
       } else {
         fail("expected a table of numbers");  // the table may hold addresses of tables or functions
@@ -259,15 +265,15 @@ class Reader {
         kReg(R"(\.reg\s+\.(\w+)\s+([%\w$]+)(?:<(\d+)>)?;)"),
         kLocal(R"(\.local\s+\.align\s+(\d+)\s+\.b8\s+([\w$]+)\[(\d+)\];)");
     std::smatch match;
-    if (std::regex_match(text_, match, kLoc)) {
+    if (matches(text_, match, kLoc)) {
       source_ = {place(match, 1), match[4].matched ? place(match, 4) : inlined_at_};
-    } else if (std::regex_match(text_, match, kReg)) {
+    } else if (matches(text_, match, kReg)) {
       if (!scopes_.empty()) {
         declare_in_scope(match);
       } else {
         kernel_->registers[match[2]] = {match[1], match[3].matched ? std::stoi(match[3]) : 0};
       }
-    } else if (std::regex_match(text_, match, kLocal)) {
+    } else if (matches(text_, match, kLocal)) {
       if (!kernel_->local.empty()) fail("expected at most one local array");
       kernel_->local = match[2];
       kernel_->local_align = std::stoi(match[1]);
@@ -296,6 +302,7 @@ class Reader {
   // The operand, with the new names of registers that scopes declare.
   std::string resolved(const std::string& operand) const {
     if (std::all_of(scopes_.begin(), scopes_.end(), [](const auto& scope) { return scope.empty(); })) return operand;
+    if (operand.size() > kMostMatched) fail("expected a shorter operand");
     static const std::regex kName(R"([%\w$]+)");
     std::string result;
     auto at = operand.begin();
@@ -369,7 +376,7 @@ std::optional<Parameter> parameter(const std::string& declaration) {
   static const std::regex kParameter(
       R"(\.param\s+(?:\.align \d+ )?\.[a-z](\d+)(?:\s+\.ptr.*)?\s+([\w$]+)(?:\[(\d+)\])?)");
   std::smatch match;
-  if (!std::regex_match(declaration, match, kParameter)) return std::nullopt;
+  if (!matches(declaration, match, kParameter)) return std::nullopt;
   const std::int64_t bytes = std::int64_t{std::stoi(match[1])} / 8 * (match[3].matched ? std::stoi(match[3]) : 1);
   if (bytes > std::numeric_limits<int>::max()) return std::nullopt;
   return Parameter{declaration, match[2], static_cast<int>(bytes)};

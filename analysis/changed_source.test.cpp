@@ -141,6 +141,34 @@ TEST_F(ExperimentsOnSources, AnEpsilonThatVanishesAtSmallScalesIsNotSettledAsRel
   }
 }
 
+// Another number makes the code right at small scales. So the number that decides here is not absolute.
+TEST_F(ExperimentsOnSources, ANumberIsNotAbsoluteBecauseAnotherOneIs) {
+  const Lane& lane =
+      opened("guarded", std::string(kHead) +
+                            "  float s = 0;\n  for (int i = 0; i < 9; ++i) s = a[i] > s ? a[i] : s;\n"
+                            "  if (s < 0.002f) return true;\n  return s / (s + s) * 1e-4f >= 1e-3f;\n}\n");
+  const Experiment one = found(lane, kFine);
+  EXPECT_FALSE(one.settled) << name(one.cause) << ' ' << one.evidence;
+}
+
+// Large triangles are outside this code's world, and it is right about them by luck.
+TEST_F(ExperimentsOnSources, ABoundOfTheWorldIsNoEpsilon) {
+  const Lane& lane = opened("world", std::string(kHead) +
+                                         "  for (int i = 0; i < 9; ++i) if (a[i] > 30 || b[i] > 30) return true;\n"
+                                         "  return false;\n}\n");
+  const Experiment one = found(lane, {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1}, {1, 1, 1}, {2, 1, 1}}});
+  EXPECT_FALSE(one.settled) << name(one.cause) << ' ' << one.evidence;
+  EXPECT_TRUE(has(one.evidence, "but there it says the same of pairs with another truth")) << one.evidence;
+}
+
+TEST_F(ExperimentsOnSources, ALimitOfItsOwnIsNoOverflow) {
+  const Lane& lane =
+      opened("limit",
+             std::string(kHead) + "  for (int i = 0; i < 9; ++i) if (a[i] > 1e15f) return false;\n  return true;\n}\n");
+  const Experiment one = found(lane, analysis::scaled(kFine, 60));
+  EXPECT_FALSE(one.settled) << name(one.cause) << ' ' << one.evidence;
+}
+
 // Contraction makes this code wrong here. With a negligible epsilon, the build without contraction is right, but the
 // contracted build is not.
 TEST_F(ExperimentsOnSources, AnEpsilonIsTriedInTheLanesOwnBuild) {

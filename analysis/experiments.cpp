@@ -158,8 +158,11 @@ class Trial {
     const Scales usual = scales_in_range(size_, lane_.scalar, kUsualFactors);
     const int below = wrong_above ? right_below(usual) : 0;
     const bool in_range = below < 0 && usual.has(0) && usual.has(below), relative = wrong_above && !in_range;
-    const bool settled = number->on_images && (below == 0 || in_range) &&
-                         (scale ? scale->cause == Cause::absolute_epsilon && turns_in_range_ : larger.has_value());
+    // An absolute epsilon becomes negligible at large scales, so the code must be right there.
+    const bool settled =
+        number->on_images && below == 0 &&
+        (scale ? scale->cause == Cause::absolute_epsilon && turns_in_range_ && ask_.last_turn().upwards()
+               : larger.has_value());
     std::string text = number->words;
     if (scale) text += "; " + scale->evidence;
     if (wrong_above) text += "; it is wrong at " + any->text();
@@ -273,12 +276,45 @@ class Trial {
   // with different units, such as lengths and areas, becomes wrong again at other scales; code with a small epsilon
   // does not.
   bool turns_once(Turn turn) const {
-    if (turn.right < turn.wrong) return false;
+    if (!turn.upwards()) return false;
     auto near = ask_.tried(lane_, common(strictly_, {turn.wrong - 12, turn.right + 12}), 26);
     const auto far = ask_.tried(lane_, strictly_, 32);
     near.insert(near.end(), far.begin(), far.end());
     return std::all_of(near.begin(), near.end(),
                        [&](const auto& one) { return one.second == (one.first >= turn.right); });
+  }
+
+  // Whether the lane is right, at the right scale of the turn, on a pair with another truth too. Code that gives one
+  // answer for all large triangles is right there by luck.
+  bool tells_apart(Turn turn) const {
+    const std::vector<PairOf> others = pairs_of_other_truth();
+    return std::any_of(others.begin(), others.end(), [&](const PairOf& other) {
+      const Verdict there = ask_.said(block_of(lane_), std::vector{scaled(other, turn.right)})[0];
+      return there == relation_of(other).verdict;
+    });
+  }
+
+  // The pair with its triangles moved together or apart, where that changes the truth.
+  std::vector<PairOf> pairs_of_other_truth() const {
+    std::vector<PairOf> result;
+    const auto add = [&](const PairOf& pair) {
+      if (is_finite(pair) && relation_of(pair).verdict != truth_) result.push_back(pair);
+    };
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {  // vertex j of B is moved to vertex i of A
+        PairOf together = pair_;
+        for (Vec3<Real>& v : together.b) v = v + (pair_.a[i] - pair_.b[j]);
+        add(together);
+      }
+    }
+    for (int c = 0; c < 3; ++c) {
+      PairOf apart = pair_;
+      const Real step = std::ldexp(Real{1}, size_.largest_difference + 2);
+      for (Vec3<Real>& v : apart.b) component(v, c) += step;
+      add(apart);
+    }
+    add({{pair_.a[0], pair_.a[1], pair_.a[2]}, {pair_.a[0], pair_.a[1], pair_.a[2]}});
+    return result;
   }
 
   std::optional<Experiment> by_scale() {
@@ -290,9 +326,10 @@ class Trial {
             "{}, and no product of up to {} coordinates leaves the exponents of {} at these "
             "scales",
             turn->text(), kMostFactors, limits().name);
-        const bool once = turns_once(*turn);
+        const bool once = turns_once(*turn), apart = once && tells_apart(*turn);
         if (!once) text += "; but its verdict changes at other scales too";
-        return Experiment{Cause::absolute_epsilon, once, std::move(text)};
+        if (once && !apart) text += "; but there it says the same of pairs with another truth";
+        return Experiment{Cause::absolute_epsilon, apart, std::move(text)};
       }
     }
     const Scales in_range = scales_in_range(size_, lane_.scalar, kUsualFactors);
@@ -314,7 +351,7 @@ class Trial {
   // Underflow or overflow, if some product of coordinates can underflow or overflow where the lane is wrong; otherwise
   // rounding.
   Cause by_exponents_at(Turn turn) const {
-    const bool upwards = turn.right > turn.wrong;
+    const bool upwards = turn.upwards();
     const bool leaves = upwards ? kMostFactors * (size_.smallest_difference + turn.wrong) < limits().least
                                 : kMostFactors * (size_.largest_difference + 1 + turn.wrong) >= limits().most;
     return !leaves ? Cause::rounding : upwards ? Cause::underflow : Cause::overflow;
@@ -327,6 +364,8 @@ class Trial {
     // rule out such code.
     constexpr bool kIsNarrow = sizeof(Real) == sizeof(float);
     const bool by_float64 = ask_.right_in_float64_at_every_scale();
+    // If the code can run in doubles, but is wrong there too, a limit of its own may decide.
+    const bool by_range = kIsNarrow && (!ask_.in_float64() || ask_.right_in_float64());
     const std::string text = turn.text(),
                       doubles = by_float64 ? ", and in float64 it is right at all scales that were tried" : "";
     if (turn.right > turn.wrong) {
@@ -334,7 +373,7 @@ class Trial {
         return {Cause::absolute_epsilon, false,
                 text + fmt::format(", though products of its differences are not too small for {}", limits().name)};
       const bool lost = 3 * (size_.largest_difference + 1 + turn.wrong) <= limits().least;
-      return {Cause::underflow, (kIsNarrow && lost) || (by_float64 && !strictly_.empty()),
+      return {Cause::underflow, (by_range && lost) || (by_float64 && !strictly_.empty()),
               lost ? text + fmt::format(", where every product of three differences is too small for {}", limits().name)
                    : text + doubles};
     }
@@ -345,7 +384,7 @@ class Trial {
     if (!by_float64 && !too_large(4))
       return {Cause::absolute_epsilon, false,
               text + fmt::format(", though products of four differences are not too large for {}", limits().name)};
-    return {Cause::overflow, (kIsNarrow && lost) || (by_float64 && too_large(4)),
+    return {Cause::overflow, (by_range && lost) || (by_float64 && too_large(4)),
             lost ? text + fmt::format(", where products of three differences are too large for {}", limits().name)
                  : text + doubles};
   }

@@ -24,6 +24,7 @@ namespace graze::analysis {
 // Two neighbouring scales: the lane is wrong at one and right at the other.
 struct Turn {
   int wrong, right;
+  bool upwards() const { return right > wrong; }
   std::string text() const { return fmt::format("scaled by 2^{} it is right, by 2^{} wrong", right, wrong); }
 };
 

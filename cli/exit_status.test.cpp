@@ -105,6 +105,13 @@ TEST_F(ExitStatus, InterruptedIs130) {
   }
 }
 
+TEST_F(ExitStatus, AnEmptyValueTakesNoOtherWord) {
+  expect_error("graze fuzz --pairs 20 --lanes 'moller*/f32/cpu' --junit= --fail-above=0", 2, {"--junit"});
+  expect_error("graze fuzz --pairs 20 --lanes 'moller*/f32/cpu' --junit --fail-above=0", 2, {"--junit"});
+  expect_error("graze fuzz --pairs 20 --out= --lanes 'moller*/f32/cpu'", 2, {"--out"});
+  expect_done("test ! -e ./--fail-above=0 && graze fuzz --pairs 20 --subject m=cmd:true --flags= --help");
+}
+
 TEST_F(ExitStatus, PlacesWithOtherThingsAreWrongUse) {
   std::filesystem::create_directories(shell.folder / "mine");
   std::ofstream(shell.folder / "mine/notes.txt") << "kept";

@@ -37,10 +37,13 @@ void add_verbs(CLI::App& app, int& status) {
 #undef GRAZE_TASK
 }
 
-// Rejects empty option values, which name nothing. Only compiler flags may be empty.
+// Rejects values that are empty or options, as if the value were forgotten. Only compiler flags may be either.
 void refuse_empty_texts(CLI::App& app) {
   const CLI::Validator not_empty(
-      [](std::string& text) { return text.empty() ? "expected a name, found ''" : std::string(); }, "");
+      [](std::string& text) {
+        return text.empty() || text.starts_with("--") ? fmt::format("expected a value, found '{}'", text) : "";
+      },
+      "");
   for (CLI::Option* option : app.get_options()) {
     if (option->get_type_size_max() > 0 && option->get_name() != "--flags") option->check(not_empty);
   }
@@ -111,10 +114,13 @@ int main(int argc, char** argv) {
   try {
     std::cout.exceptions(std::ios_base::badbit);
     expect_verb(app, argc > 1 ? argv[1] : "");
-    // "[a,b]" is a file name here, but CLI11 would parse it as a list.
-    std::vector<std::string> words(argv + 1, argv + argc);
-    for (std::string& word : words) {
+    // "[a,b]" is a file name here, but CLI11 would parse it as a list. For "--out=" it would take the next word.
+    std::vector<std::string> words;
+    for (std::string word : std::vector<std::string>(argv + 1, argv + argc)) {
+      const bool is_empty = word.starts_with("--") && word.find('=') == word.size() - 1;
       if (word.starts_with('[') && word.ends_with(']')) word.insert(0, "./");
+      words.push_back(is_empty ? word.substr(0, word.size() - 1) : std::move(word));
+      if (is_empty) words.emplace_back();
     }
     std::reverse(words.begin(), words.end());
     app.parse(std::move(words));

@@ -132,7 +132,7 @@ void draw_map(const MapOptions& options) {
                   analysis::name_of_coordinate(moved.x), analysis::name_of_coordinate(moved.y),
                   asked           ? ""
                   : is_plain(map) ? "; no verdict changes"
-                                  : ", along which verdicts change most");
+                                  : ", along which verdicts changed most in samples");
   print_wrapped({what});
   print_counts(map);
   write_pictures(map, options.out);

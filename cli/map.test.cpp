@@ -15,7 +15,7 @@ TEST_F(MapCommand, CountsAndDrawsATruthThatALineCuts) {
   std::ofstream(shell.folder / "edge.pairs") << "0 0 0 1 1 0 1 0 0  .75 .75 0 .75 .75 1 .5 .75 1\n";
   const Ran ran = shell.done("graze map edge.pairs --lanes '*/f32/cpu' --x 'b[0].x' --y 'b[0].y' --out edge.png");
   EXPECT_TRUE(has(ran.out, {"edge.pairs:1: 256 x 256 cells, b[0].x to the right and b[0].y upwards"}));
-  EXPECT_FALSE(has(ran.out, {"along which verdicts change most"}));
+  EXPECT_FALSE(has(ran.out, {"along which verdicts changed most"}));
   const std::size_t truth = ran.out.find("truth ");
   ASSERT_NE(truth, std::string::npos) << ran.out;
   const std::string line = ran.out.substr(truth, ran.out.find('\n', truth) - truth);

@@ -194,6 +194,18 @@ TEST_F(SubjectVerbs, ChangedCodeIsSaidAndStoredVerdictsAreShown) {
   expect_error(std::string(kWithoutDevice) + "check c/cases/one.pairs --lanes 'mine/*'", 2,
                {"mine/f32/cpu", "changed", "--resubject"});
   expect_error(std::string(kWithoutDevice) + "minimize c", 1, {"mine.c", "changed"});
+  // The campaign's report says that other results in its folder are about other code.
+  const std::string other = "not about the code that the campaign ran";
+  expect_done("graze report c");
+  EXPECT_FALSE(has(shell.file("c/report.html"), {other}));
+  for (const std::string results :
+       {"pareto --lanes 'mine/f32/cpu,exact/f32/cpu' --pairs 1000", "tune mine/f32/cpu --pairs 100"}) {
+    expect_done("rm -f c/pareto.json; graze " + results +
+                " --strata uniform --subject mine=./mine.c --out c > out && "
+                "graze report c");
+    EXPECT_TRUE(has(shell.file("c/report.html"), {other})) << results;
+  }
+  expect_done("rm c/tune.json");
   // Verbs that do not run the code still work.
   expect_done(std::string(kWithoutDevice) + "report c && graze dump c > /dev/null && graze status c");
   if (shell("graze view --out v.html").status == 0) {

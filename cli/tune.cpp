@@ -254,7 +254,7 @@ int tune(const TuneOptions& options) {
   const Lane* const costly[] = {&chosen, &exact};
   print_wrapped(cost_sentences(costly, spec.others));
   fuzz::Json json = reports::tuning_json(question, tuned);
-  if (source) json["subjects"] = reports::code_json(subjects::record({lane->id}));
+  if (lane->foreign) json["subjects"] = reports::code_json(subjects::record({lane->id}));
   std::vector<Result> results = {{"tune.json", fuzz::sealed(json).dump(1) + "\n"},
                                  {"curves.svg", reports::tuning_figure(question, tuned)}};
   if (!source) results.push_back({"policy.h", reports::policy_header(chosen)});

@@ -46,7 +46,7 @@ std::string shares_sentence(const std::vector<const Json*>& lanes, std::uint64_t
     const Json &total = lanes[0]->at("total"), &distances = total.at("sites").at("plane_distance");
     const std::uint64_t pairs = number_at(total, "pairs");
     const auto rate = [&](const Json& of, const char* key) { return rate_words(number_at(of, key), pairs); };
-    return fmt::format("Some value differs on {} of the pairs, some sign on {}, and the verdict on {}.{}",
+    return fmt::format("Some value differs on {} of the pairs, some sign or choice on {}, and the verdict on {}.{}",
                        rate(total, "differs"), rate(total, "sign"), rate(total, "verdict"),
                        number_at(distances, "differs") == 0
                            ? ""

@@ -93,11 +93,12 @@ std::string differences_figure(const Json& of) {
 
 std::string funnel_figure(const Json& of) {
   const Json& total = of.at("total");
-  return mirrored_bars("From differing values to differing verdicts: pairs of triangles",
-                       {"all", "a value differs", "a sign differs", "a comparison differs", "the verdict differs"},
-                       {number_at(total, "pairs"), number_at(total, "differs"), number_at(total, "sign"),
-                        number_at(total, "outcome"), number_at(total, "verdict")},
-                       {}, "pairs", "");
+  return mirrored_bars(
+      "From differing values to differing verdicts: pairs of triangles",
+      {"all", "a value differs", "a sign or choice differs", "a comparison differs", "the verdict differs"},
+      {number_at(total, "pairs"), number_at(total, "differs"), number_at(total, "sign"), number_at(total, "outcome"),
+       number_at(total, "verdict")},
+      {}, "pairs", "");
 }
 
 std::string band_figure(const Json& of) {

@@ -228,6 +228,17 @@ Json make_choices(const std::filesystem::path& directory) {
   const auto read = [&](const char* name, void (*expect_possible)(const Json&)) {
     return read_checked(directory / name, expect_possible);
   };
+  // Says first that a result is about other code than the campaign's.
+  const Json spec = fuzz::recorded_spec(directory);
+  const auto told = [&](Json result, const Json& of) {
+    if (result.is_null() || !spec.is_object()) return result;
+    std::vector<std::string> differences = code_differences(spec, of);
+    if (differences.empty()) return result;
+    differences.insert(differences.begin(), "These results are not about the code that the campaign ran.");
+    for (const Json& sentence : result.at("sentences")) differences.push_back(sentence);
+    result["sentences"] = differences;
+    return result;
+  };
   const Json values = read_discrepancy(directory / "discrepancy.json");
   Json discrepancy;
   if (!values.is_null()) {
@@ -236,9 +247,8 @@ Json make_choices(const std::filesystem::path& directory) {
       sentences.insert(sentences.begin(), std::move(others));
     discrepancy = {{"sentences", sentences}, {"page", "discrepancy.html"}};
   }
-  return {{"tuned", read("tune.json", expect_possible_tuned)},
-          {"pareto", read("pareto.json", expect_possible_pareto)},
-          {"discrepancy", discrepancy}};
+  const Json tuned = read("tune.json", expect_possible_tuned), pareto = read("pareto.json", expect_possible_pareto);
+  return {{"tuned", told(tuned, tuned)}, {"pareto", told(pareto, pareto)}, {"discrepancy", told(discrepancy, values)}};
 }
 
 std::string report_text(const Json& report) {
@@ -268,7 +278,7 @@ Json stored_costs(const std::filesystem::path& file, const Json& report) {
   if (costs.is_null()) return costs;
   checked(file, "costs of `graze report`", [&] { expect_possible_costs(costs, report); });
   if (costs.value("report", "") != fuzz::sealed(report).at("checksum"))
-    throw std::runtime_error(cannot("use", file, fmt::format("it belongs to another report; {}", kAgain)));
+    throw std::runtime_error(cannot("use", file, fmt::format("it belongs to another report.json; {}", kAgain)));
   return costs;
 }
 

@@ -89,8 +89,9 @@ class Hunter {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_));
       tell_status();
       const std::uint64_t rounds = (share_.pairs + per_round_ - 1) / per_round_;
-      for (std::uint64_t first = 0; first < rounds && !over(); first += kRoundsOfGeneration)
-        generation(first, std::min(rounds, first + kRoundsOfGeneration));
+      for (std::uint64_t first = 0; first < rounds; first += kRoundsOfGeneration) {
+        if (!generation(first, std::min(rounds, first + kRoundsOfGeneration))) break;
+      }
       Outcome outcome = finished();
       store_.reset();
       status_.end(outcome.complete ? "done" : "stopped");
@@ -118,8 +119,9 @@ class Hunter {
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   bool over() const { return stop_ || (hunt_.seconds > 0 && seconds() >= hunt_.seconds); }
 
-  // Runs the rounds [first, last), all from the current corpus, then adds their findings in order.
-  void generation(std::uint64_t first, std::uint64_t last) {
+  // Runs the rounds [first, last), all from the current corpus, then adds their findings in order. Rounds that are done
+  // are added even after a stop.   Returns: whether all of them are done.
+  bool generation(std::uint64_t first, std::uint64_t last) {
     std::vector<Wanted> rounds;
     for (std::uint64_t r = first; r < last; ++r) {
       Wanted wanted;
@@ -130,12 +132,13 @@ class Hunter {
       wanted.committed = store_->holds(wanted.range);
       rounds.push_back(std::move(wanted));
     }
-    if (!play(rounds)) return;
+    if (!play(rounds)) return false;
     for (Wanted& round : rounds) {
       if (!round.whole()) finish(round);
       take(*round.kept);
       report_progress();
     }
+    return true;
   }
 
   // Runs the rounds that are not done yet, at most `threads_` at once.   Returns: whether all rounds are done.
@@ -143,10 +146,8 @@ class Hunter {
     Processes processes;
     for (const Wanted& round : rounds) {
       if (round.whole()) continue;
-      while (processes.size() >= static_cast<std::size_t>(threads_)) {
-        if (over()) return false;
-        processes.wait_for_one();
-      }
+      while (!over() && processes.size() >= static_cast<std::size_t>(threads_)) processes.wait_for_one();
+      if (over()) return false;
       const fs::path file = result_file_of(round.range);
       if (fs::is_regular_file(fs::symlink_status(file)) && !may_replace_foreign && !are_of_result(read_whole(file)))
         throw UsageError(cannot("replace", file, kForeign));
@@ -254,7 +255,7 @@ class Hunter {
   }
 
   Outcome finished() {
-    const bool complete = store_->gaps(0).empty();
+    const bool complete = store_->gaps(0).empty() && found_->all.pairs == share_.pairs;
     if (!complete) tell_status(true);
     Outcome outcome{complete, write_own_summary(hunt_.campaign, *store_, complete, found_->all.pairs),
                     store_->oracle()};

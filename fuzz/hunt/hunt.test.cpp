@@ -251,6 +251,8 @@ TEST_F(HuntFiles, GivesTheSameBytesOnAnyThreadsAfterInterruptionsAndDamage) {
   EXPECT_EQ(summary["strata"]["hunt"]["pairs"], 5000);
   run("one", 1);
   expect_same_hunt("whole", "one");
+  EXPECT_TRUE(run("one", 2, 0)["complete"].get<bool>());  // stopped at once, but finished before
+  expect_same_hunt("whole", "one");
   for (int part = 0; !run("parts", 2, 3)["complete"].get<bool>(); ++part) {
     ASSERT_LT(part, 10);
     std::ofstream(root_ / "parts/hunt/000000.round", std::ios::app) << "x";  // the damaged round runs again

@@ -309,9 +309,8 @@ std::string sentence(const Explanation& explanation, const AlgorithmInfo* subjec
   const Lane& lane = *first->lane;
   const bool stored = decides_stored(lane, explanation.pair) && first->cause != Cause::stored;
   const std::string also = others.empty() ? "" : "; also wrong: " + others,
-                    why = first->by_experiment()         ? reason_by_experiment(*first)
-                          : first->cause == Cause::logic ? reason(*first) + doubt(*first)
-                                                         : reason(*first) + doubt(*first) + "; " + remedy(*first);
+                    last = first->cause == Cause::logic ? "" : "; " + remedy(*first),
+                    why = first->by_experiment() ? reason_by_experiment(*first) : reason(*first) + doubt(*first) + last;
   return fmt::format("{}/{} ({}) says {}, but {}: {}{}{}.", lane.info->id, name(lane.scalar), same,
                      name(first->verdict), phrase(explanation.pair, explanation.truth),
                      stored ? "on the pair as float32 stores it, " : "", why, also);

@@ -308,7 +308,8 @@ int try_source(const TryOptions& options) {
   if (!outcome.complete) return interrupted();
   answer.summary = outcome.summary;
   const reports::CampaignCounts counts = reports::counts_of(outcome.summary);
-  const reports::ReportLane& lane = counts.lanes[reports::own_lanes(counts).front()];
+  const std::size_t index = reports::own_lanes(counts).front();
+  const reports::ReportLane& lane = counts.lanes[index];
   const Lane& own = *find_lane(lane.id);
   {
     const fuzz::FolderLock held(campaign.directory, fuzz::FolderLock::WhenTaken::refuse);
@@ -332,7 +333,7 @@ int try_source(const TryOptions& options) {
   write_report(fuzz.out);
   write_junit(fuzz, under_test, outcome.summary);
   answer.costs = call_costs(own, campaign.sources);
-  answer.epsilon = epsilon_of_code(own, campaign.sources, fuzz.out);
+  answer.epsilon = epsilon_of_code(own, campaign.sources, counts.total.wrong(index) > 0, fuzz.out);
   answer.effect = epsilon_effect(own, campaign.sources);
   answer.again = with_more_pairs(options, fuzz);
   fmt::print("{}", options.json ? to_json(answer, under_test).dump(1) + '\n' : text_of(answer, output_screen()));

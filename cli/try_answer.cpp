@@ -139,7 +139,7 @@ CallCosts call_costs(const Lane& own, const std::vector<strata::PairSource>& sou
           pairs.size()};
 }
 
-OwnEpsilon epsilon_of_code(const Lane& own, const std::vector<strata::PairSource>& sources,
+OwnEpsilon epsilon_of_code(const Lane& own, const std::vector<strata::PairSource>& sources, bool is_wrong,
                            const std::string& directory) {
   if (const std::string why = subjects::why_not_rebuilt(own); !why.empty())
     return {"", "", fmt::format("Graze cannot change its epsilon: {}.", why)};
@@ -151,7 +151,7 @@ OwnEpsilon epsilon_of_code(const Lane& own, const std::vector<strata::PairSource
   std::erase_if(candidates, [&](const subjects::Epsilon& e) {
     return (e.value && (*e.value <= 0 || *e.value > kLargestEpsilon)) || !tunable(own, e.name);
   });
-  if (candidates.size() > 1) {  // the one whose replacement mends most comes first
+  if (is_wrong && candidates.size() > 1) {  // the one whose replacement mends most comes first
     std::vector<std::uint64_t> mended(std::min(candidates.size(), kMostTried));
     for (std::size_t i = 0; i < mended.size(); ++i) {
       if (const auto effect = effect_of(own, {candidates[i]}, sources)) mended[i] = effect->mended;

@@ -41,7 +41,8 @@ struct OwnEpsilon {
 };
 // If several numbers may be the epsilon, `tune` names the one whose replacement by a negligible number mends most
 // pairs.
-OwnEpsilon epsilon_of_code(const Lane& own, const std::vector<strata::PairSource>& sources,
+// is_wrong: whether the code is wrong on some of these pairs.
+OwnEpsilon epsilon_of_code(const Lane& own, const std::vector<strata::PairSource>& sources, bool is_wrong,
                            const std::string& directory);
 
 // Builds the code again with a negligible number in place of its obvious epsilon, or of all small numbers, and runs it

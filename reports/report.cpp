@@ -199,8 +199,7 @@ Json read_checked(const std::filesystem::path& file, void (*expect_possible)(con
 }
 
 // A sentence if `graze discrepancy` wrote counts on other pairs into the campaign's folder; otherwise empty.
-std::string other_pairs(const std::filesystem::path& directory, const Json& discrepancy) {
-  const Json spec = fuzz::recorded_spec(directory);
+std::string other_pairs(const std::filesystem::path& directory, const Json& spec, const Json& discrepancy) {
   if (!spec.is_object()) return "";
   const std::vector<std::string> drawn = spec.at("strata");
   const std::string scene = spec.contains("scene") ? spec["scene"].at("name") : "";
@@ -228,8 +227,11 @@ Json make_choices(const std::filesystem::path& directory) {
   const auto read = [&](const char* name, void (*expect_possible)(const Json&)) {
     return read_checked(directory / name, expect_possible);
   };
+  const Json values = read_discrepancy(directory / "discrepancy.json");
+  const Json tuned = read("tune.json", expect_possible_tuned), pareto = read("pareto.json", expect_possible_pareto);
+  const bool none = values.is_null() && tuned.is_null() && pareto.is_null();
+  const Json spec = none ? Json() : fuzz::recorded_spec(directory);
   // Says first that a result is about other code than the campaign's.
-  const Json spec = fuzz::recorded_spec(directory);
   const auto told = [&](Json result, const Json& of) {
     if (result.is_null() || !spec.is_object()) return result;
     std::vector<std::string> differences = code_differences(spec, of);
@@ -239,15 +241,13 @@ Json make_choices(const std::filesystem::path& directory) {
     result["sentences"] = differences;
     return result;
   };
-  const Json values = read_discrepancy(directory / "discrepancy.json");
   Json discrepancy;
   if (!values.is_null()) {
     std::vector<std::string> sentences = discrepancy_answer(values);
-    if (std::string others = other_pairs(directory, values); !others.empty())
+    if (std::string others = other_pairs(directory, spec, values); !others.empty())
       sentences.insert(sentences.begin(), std::move(others));
     discrepancy = {{"sentences", sentences}, {"page", "discrepancy.html"}};
   }
-  const Json tuned = read("tune.json", expect_possible_tuned), pareto = read("pareto.json", expect_possible_pareto);
   return {{"tuned", told(tuned, tuned)}, {"pareto", told(pareto, pareto)}, {"discrepancy", told(discrepancy, values)}};
 }
 

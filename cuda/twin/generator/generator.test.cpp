@@ -80,6 +80,7 @@ TEST(TwinGenerator, RefusesWhatItCannotRead) {
   EXPECT_EQ(of_file("frobnicate"), "f.ptx:2: expected a kernel: frobnicate");
   const std::string name(200'000, 'a');  // longer than the stack of a matcher that recurses for each character
   EXPECT_LT(of_file(".visible .func " + name + "()").size(), 300u);
+  EXPECT_LT(of_file(".visible" + std::string(200'000, ' ') + ".const x").size(), 300u);
   for (const std::string& line : {"mov.u32 %" + name + ", 1;", "bra " + name + ";", ".loc 1 " + name + ";",
                                   "st.global.u32 [%" + name + "], 1;", ".reg .b32 %" + name + ";"})
     EXPECT_FALSE(complaint(line).empty()) << line.substr(0, 20);

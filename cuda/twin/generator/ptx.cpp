@@ -124,6 +124,7 @@ class Reader {
         kFunction(R"((\.visible\s+|\.weak\s+|\.extern\s+)?\.func\s+(?:\((.*?)\)\s*)?([\w$]+)\s*\(?\)?)"),
         kTable(R"((?:\.visible\s+|\.weak\s+)?\.(?:const|global)\s)");
     std::smatch match;
+    const std::string start = text_.substr(0, kMostMatched);  // only a table may be longer
     if (matches(text_, match, kVersion)) {
       module_.version = match[1];
     } else if (matches(text_, match, kTarget)) {
@@ -149,7 +150,7 @@ class Reader {
       kernel_->linkage = match[1].matched ? trimmed(match[1].str()) + " " : "";
       if (match[2].matched) kernel_->returned.push_back(parameter_or_fail(trimmed(match[2].str())));
       source_ = {};
-    } else if (std::regex_search(text_, kTable, std::regex_constants::match_continuous)) {
+    } else if (std::regex_search(start, kTable, std::regex_constants::match_continuous)) {
       join_lines();
       read_table();
     } else {

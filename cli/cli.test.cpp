@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command as users run it: JSON contracts, one clear line for bad input, and no lost work when it is killed.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

@@ -43,12 +43,12 @@ TEST_F(Dump, ATableSaysWhatCheckSays) {
     const auto object = nlohmann::json::parse(line);
     const auto& row = rows.at(i);
     EXPECT_EQ(row[0] + ':' + row[1] + ':' + row[2], "near_edge_edge:7:" + std::to_string(i));
-    EXPECT_EQ(object["truth"]["verdict"], row[21]);
-    EXPECT_EQ(object["truth"]["contact"], row[22]);
+    EXPECT_EQ(object["truth"]["verdict"].get<std::string>(), row[21]);
+    EXPECT_EQ(object["truth"]["contact"].get<std::string>(), row[22]);
     EXPECT_EQ(object["truth"]["margin"].get<double>(), std::stod(row[23]));
     EXPECT_EQ(object["truth"]["margin_ulps"].get<double>(), std::stod(row[24]));
-    EXPECT_EQ(object["lanes"]["moller_1997/f32/cpu"], row[25]);
-    EXPECT_EQ(object["lanes"]["exact/f32/cpu"], row[26]);
+    EXPECT_EQ(object["lanes"]["moller_1997/f32/cpu"].get<std::string>(), row[25]);
+    EXPECT_EQ(object["lanes"]["exact/f32/cpu"].get<std::string>(), row[26]);
   }
 }
 
@@ -69,11 +69,11 @@ TEST_F(Dump, PairsReadBackWithTheSameTruth) {
   for (; std::getline(lines, line) && std::getline(objects, text); ++index) {
     const auto object = nlohmann::json::parse(text);
     EXPECT_EQ(field_of(line, "index"), std::to_string(index));
-    EXPECT_EQ(field_of(line, "truth"), object["truth"]["verdict"]);
-    EXPECT_EQ(field_of(line, "contact"), object["truth"]["contact"]);
+    EXPECT_EQ(field_of(line, "truth"), object["truth"]["verdict"].get<std::string>());
+    EXPECT_EQ(field_of(line, "contact"), object["truth"]["contact"].get<std::string>());
     EXPECT_EQ(std::stod(field_of(line, "margin")), object["truth"]["margin"].get<double>());
-    EXPECT_EQ(field_of(line, "moller_1997.f32.cpu"), object["lanes"]["moller_1997/f32/cpu"]);
-    EXPECT_EQ(field_of(line, "exact.f32.cpu"), object["lanes"]["exact/f32/cpu"]);
+    EXPECT_EQ(field_of(line, "moller_1997.f32.cpu"), object["lanes"]["moller_1997/f32/cpu"].get<std::string>());
+    EXPECT_EQ(field_of(line, "exact.f32.cpu"), object["lanes"]["exact/f32/cpu"].get<std::string>());
   }
   EXPECT_EQ(index, 40);
   expect_done("graze repro l.pairs > /dev/null");  // stratum, seed and index name the same pairs

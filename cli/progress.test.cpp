@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "cli/run_graze.h"
+
 namespace graze::cli {
 namespace {
 

@@ -101,8 +101,9 @@ TEST_F(ViewCommand, QueriesAndTheirResults) {
   EXPECT_EQ(held["title"], "hits of ref.txt in tent.obj");
   EXPECT_EQ(held["ids"], (std::vector<int>{1, 2, 0}));
   EXPECT_EQ(held["pairs"][0]["name"], "tent.obj, triangle 1");
-  EXPECT_EQ(held["pairs"][0]["bits"].get<std::string>().substr(72), held["triangles"][0]);  // hits come first
-  EXPECT_EQ(held["pairs"][1]["bits"].get<std::string>().substr(72), held["triangles"][1]);
+  EXPECT_EQ(held["pairs"][0]["bits"].get<std::string>().substr(72),
+            held["triangles"][0].get<std::string>());  // hits come first
+  EXPECT_EQ(held["pairs"][1]["bits"].get<std::string>().substr(72), held["triangles"][1].get<std::string>());
   expect_done("graze query ref.txt tent.obj --pairs hits.pairs --obj hits.obj");
   EXPECT_EQ(shell("graze view hits.pairs").out, "Wrote view.html: 2 pairs, 2 triangles\n");
   EXPECT_EQ(data("view.html")["opens"], "triangles");

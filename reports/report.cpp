@@ -277,7 +277,7 @@ Json stored_costs(const std::filesystem::path& file, const Json& report) {
   Json costs = fuzz::read_sealed(file, kAgain);
   if (costs.is_null()) return costs;
   checked(file, "costs of `graze report`", [&] { expect_possible_costs(costs, report); });
-  if (costs.value("report", "") != fuzz::sealed(report).at("checksum"))
+  if (costs.value("report", "") != fuzz::sealed(report).at("checksum").get<std::string>())
     throw std::runtime_error(cannot("use", file, fmt::format("it belongs to another report.json; {}", kAgain)));
   return costs;
 }

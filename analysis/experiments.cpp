@@ -287,34 +287,9 @@ class Trial {
   // Whether the lane is right, at the right scale of the turn, on a pair with another truth too. Code that gives one
   // answer for all large triangles is right there by luck.
   bool tells_apart(Turn turn) const {
-    const std::vector<PairOf> others = pairs_of_other_truth();
-    return std::any_of(others.begin(), others.end(), [&](const PairOf& other) {
-      const Verdict there = ask_.said(block_of(lane_), std::vector{scaled(other, turn.right)})[0];
-      return there == relation_of(other).verdict;
-    });
-  }
-
-  // The pair with its triangles moved together or apart, where that changes the truth.
-  std::vector<PairOf> pairs_of_other_truth() const {
-    std::vector<PairOf> result;
-    const auto add = [&](const PairOf& pair) {
-      if (is_finite(pair) && relation_of(pair).verdict != truth_) result.push_back(pair);
-    };
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {  // vertex j of B is moved to vertex i of A
-        PairOf together = pair_;
-        for (Vec3<Real>& v : together.b) v = v + (pair_.a[i] - pair_.b[j]);
-        add(together);
-      }
-    }
-    for (int c = 0; c < 3; ++c) {
-      PairOf apart = pair_;
-      const Real step = std::ldexp(Real{1}, size_.largest_difference + 2);
-      for (Vec3<Real>& v : apart.b) component(v, c) += step;
-      add(apart);
-    }
-    add({{pair_.a[0], pair_.a[1], pair_.a[2]}, {pair_.a[0], pair_.a[1], pair_.a[2]}});
-    return result;
+    const Verdict other = truth_ == Verdict::intersects ? Verdict::disjoint : Verdict::intersects;
+    const auto said = ask_.said(block_of(lane_), detail::pairs_of_other_truth(scaled(pair_, turn.right)));
+    return std::find(said.begin(), said.end(), other) != said.end();
   }
 
   std::optional<Experiment> by_scale() {

@@ -47,6 +47,30 @@ bool is_degenerate(const BasicPair<Real>& pair) {
   return hulls.dimension_a < 2 || hulls.dimension_b < 2;
 }
 
+// The pair with its triangles moved together or apart, where that changes the truth.
+template <class Real>
+std::vector<BasicPair<Real>> pairs_of_other_truth(const BasicPair<Real>& pair) {
+  std::vector<BasicPair<Real>> result;
+  const auto add = [&, truth = relation_of(pair).verdict](const BasicPair<Real>& other) {
+    if (is_finite(other) && relation_of(other).verdict != truth) result.push_back(other);
+  };
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {  // vertex j of B is moved to vertex i of A
+      BasicPair<Real> together = pair;
+      for (Vec3<Real>& v : together.b) v = v + (pair.a[i] - pair.b[j]);
+      add(together);
+    }
+  }
+  const Real step = std::ldexp(Real{1}, Size(pair).largest_difference + 2);
+  for (int c = 0; c < 3; ++c) {
+    BasicPair<Real> apart = pair;
+    for (Vec3<Real>& v : apart.b) component(v, c) += step;
+    add(apart);
+  }
+  add({{pair.a[0], pair.a[1], pair.a[2]}, {pair.a[0], pair.a[1], pair.a[2]}});
+  return result;
+}
+
 // Multiplies all coordinates by `factor`, then adds axis `from` to axis `to` if they differ. The truth stays the same,
 // and if the factor is 1, so does every determinant. Longer products change.
 struct Image {

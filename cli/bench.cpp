@@ -214,7 +214,7 @@ void add_bench(CLI::App& app, int& status) {
              "Mesh to test as well: all its triangles against the one in the middle of the file");
   add_valued(*command, "--between", options->between, "MESH MESH",
              "Two meshes to test against each other, with the exact test and with CGAL's do_intersect; nothing "
-             "else is timed unless --triangles is given")
+             "else is timed unless --triangles or --mesh is given")
       ->expected(2);
   add_globs(*command, "--lanes", options->lanes.globs,
             "Patterns of the lanes to time besides the exact one: host lanes on cores, CUDA lanes on GPUs, or as "
@@ -226,10 +226,10 @@ void add_bench(CLI::App& app, int& status) {
   command->callback([options, &status, command] {
     if (!options->between.empty() && command->count("--triangles") == 0) {
       for (const char* option : {"--lanes", "--subject", "--toolchains", "--plot"}) {
-        if (command->count(option) > 0)
+        if (command->count(option) > 0 && options->mesh.empty())
           throw UsageError(fmt::format(
-              "{} applies only to arrays of triangles, but --between without --triangles times no arrays; add "
-              "--triangles, or omit this option",
+              "{} applies only to arrays of triangles, but --between without --triangles and --mesh times no arrays; "
+              "add --triangles or --mesh, or omit this option",
               option));
       }
       options->sizes.clear();

@@ -458,10 +458,12 @@ Wanted parse_subject(const std::string& text) {
   const auto fits = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.';
   };
+  constexpr std::size_t kLongestName = 100;
   if (equals == text.npos || name.find_first_not_of('.') == name.npos || !std::all_of(name.begin(), name.end(), fits) ||
-      equals + 1 == text.size()) {
-    throw UsageError("--subject: expected NAME=WHAT with a name of letters, digits, '_', '-' and '.', found '" +
-                     printable(text) + "'");
+      name.size() > kLongestName || equals + 1 == text.size()) {
+    throw UsageError(fmt::format(
+        "--subject: expected NAME=WHAT with a name of at most {} letters, digits, '_', '-' and '.', found '{}'",
+        kLongestName, printable(text)));
   }
   Wanted wanted{name, text.substr(equals + 1), {}};
   if (!wanted.what.starts_with(kCommand)) wanted.what = fs::absolute(wanted.what).lexically_normal().string();

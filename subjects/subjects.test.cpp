@@ -507,6 +507,7 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
   expect_error("x", "expected NAME=WHAT .* found 'x'");
   expect_error("a/b=" + so, "expected NAME=WHAT");
   expect_error("x=", "expected NAME=WHAT");
+  expect_error(std::string(101, 'x') + '=' + so, "expected NAME=WHAT");
   for (const char* name : {".", "..", "..."}) expect_error(std::string(name) + '=' + so, "expected NAME=WHAT");
   for (const char* function : {"good\n", "g\"", "};int z={0", "good;system(\"id\")", "\x1b[31m"})
     expect_error("x=" + so + ':' + function, "expected the name of a function, found ");

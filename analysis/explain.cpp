@@ -269,9 +269,11 @@ bool same_run(const Lane& l, const Lane& r) {
 }
 
 template <class Real>
-void add_surroundings(LaneExplanation& result, Verdict truth, int bits_needed, const Neighbours<Real>& neighbours) {
+void add_surroundings(LaneExplanation& result, Verdict truth, int bits_needed, bool bits_alone,
+                      const Neighbours<Real>& neighbours) {
   const Lane& lane = *result.lane;
   result.bits_needed = bits_needed;
+  result.bits_alone = bits_alone;
   result.orders = wrong_of(lane, neighbours.orders, truth);
   result.mirrored = wrong_of(lane, neighbours.mirrored, truth);
   result.scalings = wrong_of(lane, neighbours.scalings, truth);
@@ -396,10 +398,12 @@ Explanation explain(const AnyPair& pair, std::span<const Lane* const> lanes) {
       const bool f32 = lane.lane->scalar == Scalar::f32;
       needed = f32 || found->second == 0 ? found->second : std::max(found->second, 53);
     }
+    const bool alone =
+        needed > 0 && oracle::decide_with_bits(lane.lane->algorithm, own.doubles, needed, lane.lane->scalar) == truth;
     visit(own, [&]<class Real>(const BasicPair<Real>& stored) {
       auto& neighbours = std::get<std::optional<Neighbours<Real>>>(around);
       if (!neighbours) neighbours.emplace(stored, truth);
-      add_surroundings(lane, truth, needed, *neighbours);
+      add_surroundings(lane, truth, needed, alone, *neighbours);
     });
   }
   return result;

@@ -100,8 +100,10 @@ struct LaneExplanation {
   Blame contractions;             // only for a cuda-fma lane whose verdict contraction changes
   bool cpu_is_right = false;      // for users' CUDA code with contractions: the cpu lane of the same source is right
   Settled settled;
-  int bits_needed;  // the shortest mantissa, no shorter than the lane's, that gives the right verdict, as does every
-                    // longer one up to kMostBits; 0 if there is none, or if it may be chance (see explain.cpp)
+  int bits_needed;  // the shortest mantissa, no shorter than the lane's, that gives the right verdict without exponent
+                    // limits, as does every longer one up to kMostBits; 0 if there is none, or if it may be chance
+                    // (see explain.cpp)
+  bool bits_alone;  // whether these bits are enough with the scalar's exponents
   std::array<bool, kCoordinates> matters;  // false: no nudge of the coordinate changes the truth or the lane's verdict
   WrongOf orders, mirrored, scalings;      // see neighbours.h
   std::string experiment;  // for lanes without steps (foreign, under a policy, or `stored`): the evidence for the cause

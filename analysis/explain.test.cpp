@@ -140,6 +140,23 @@ TEST(Explain, ARangeThatIsNotAllThatLacksIsStillTheCause) {
   EXPECT_TRUE(std::isnan(lane.told()->left.lane));
 }
 
+// Some products of 26 bits are too large for float32's exponents here.
+TEST(Explain, BitsThatAreEnoughOnlyWithMoreExponentsAreSaidSo) {
+  const Pair pair{{{-0x1.cf1f2p+22f, -0x1.d99f58p+21f, 0x1.1e02fcp+22f},
+                   {-0x1.c5de2cp+22f, -0x1.c72788p+21f, 0x1.13d54p+22f},
+                   {-0x1.cc06ecp+22f, -0x1.ccb798p+21f, 0x1.18a818p+22f}},
+                  {{-0x1.cb6cccp+22f, -0x1.cd4138p+21f, 0x1.167268p+22f},
+                   {-0x1.c8b54cp+22f, -0x1.c95bf8p+21f, 0x1.16a304p+22f},
+                   {-0x1.c58768p+22f, -0x1.bec89p+21f, 0x1.18e838p+22f}}};
+  const Explanation explanation = explain(pair, lanes_here());
+  const LaneExplanation& lane = lane_of(explanation, "interval_overlap/f32/cpu");
+  EXPECT_EQ(name(lane.cause), "rounding");
+  EXPECT_EQ(lane.bits_needed, 26);
+  EXPECT_FALSE(lane.bits_alone);
+  const std::string text = sentence(explanation, lane.lane->info);
+  EXPECT_NE(text.find("26 mantissa bits would be enough with unlimited exponents"), std::string::npos) << text;
+}
+
 // Exact arithmetic divides by zero on the lane's path, so the compared numbers have no exact values.
 TEST(Explain, NumbersThatExactArithmeticDoesNotDefineAreNotGivenExactly) {
   const Pair pair{{{0, 0, 0}, {0x1.a59p-3f, 0x1.ad0cep-2f, -0x1.fb2cp+0f}, {0x1.96b08p+0f, 0, -0x1.5a92p+1f}},
@@ -375,6 +392,8 @@ TEST(ExplainDoubles, CausesAreTrue) {
               << lane.lane->id << ' ' << name(lane.verdict) << ' ' << name(truth) << ' ' << name(of_stored);
         } else if (lane.cause == Cause::rounding && lane.bits_needed > 0) {
           EXPECT_EQ(oracle::decide_with_bits(lane.lane->algorithm, pair, lane.bits_needed), truth);
+          EXPECT_EQ(oracle::decide_with_bits(lane.lane->algorithm, pair, lane.bits_needed, Scalar::f64) == truth,
+                    lane.bits_alone);
         }
       }
     }

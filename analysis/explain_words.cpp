@@ -181,7 +181,8 @@ std::string remedy(const LaneExplanation& lane) {
   const std::string bits = lane.bits_needed == 0
                                ? fmt::format("no mantissa of up to {} bits is known to be enough", oracle::kMostBits)
                                : fmt::format("{} mantissa bits would be enough", lane.bits_needed);
-  if (lane.cause == Cause::rounding) return bits;
+  if (lane.cause == Cause::rounding)
+    return bits + (lane.bits_needed == 0 || lane.bits_alone ? "" : " with unlimited exponents");
   if (lane.settled != Settled::not_without) return "with unlimited exponents it is right";
   if (lane.bits_needed == (lane.lane->scalar == Scalar::f32 ? 24 : 53))
     return std::string("with unlimited exponents") +

@@ -140,7 +140,8 @@ std::string lane_text(const AnyPair& pair, const analysis::LaneExplanation& lane
   line(4, fmt::format("mantissa bits needed for the right verdict{}: {}", stored ? " on the stored pair" : "",
                       lane.cause == analysis::Cause::logic ? "no number of bits helps"
                       : lane.bits_needed == 0              ? fmt::format("none up to {} is known", oracle::kMostBits)
-                                                           : fmt::format("{}", lane.bits_needed)));
+                                                           : fmt::format("{}{}", lane.bits_needed,
+                                                            lane.bits_alone ? "" : ", with unlimited exponents")));
   surroundings();
   return text;
 }

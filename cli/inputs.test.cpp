@@ -97,6 +97,8 @@ TEST_F(Inputs, WrongWordsAreNamedWithWhatIsNearest) {
   expect_error("echo | graze check - --truth-only --lanes '*'", 2, {"--lanes"});
   expect_error("echo | graze check - --truth-only --toolchains x86-gcc", 2, {"--toolchains"});
   expect_error("graze dump uniform --pairs 2 --toolchains x86-gcc", 2, {"--toolchains", "--lanes"});
+  expect_error("graze fuzz --pairs 2 --toolchains x86-gcc,x86-clang --lanes '*/x86-gcc'", 2,
+               {"--toolchains", "x86-clang", "--lanes"});
   expect_error("graze dump uniform --pairs 2 --executor twin", 2, {"--executor", "--lanes"});
   expect_error("graze scene a.toml --sufficient 1e-3 --poses p.csv", 2, {"--poses"});
   expect_error("graze scene a.toml --sufficient 1e-3 --units mm", 2, {"--units"});

@@ -151,13 +151,18 @@ void expect_own_code_among(const LaneOptions& options, const std::vector<std::st
   }
   if (options.toolchains.empty()) return;
   const std::vector<subjects::Toolchain> toolchains = subjects::selected_toolchains(options.toolchains);
-  const auto is_of_one = [&](const std::string& id) {
-    return std::any_of(toolchains.begin(), toolchains.end(),
-                       [&](const subjects::Toolchain& toolchain) { return id.ends_with('/' + toolchain.name); });
-  };
-  if (std::none_of(ids.begin(), ids.end(), is_of_one))
-    throw UsageError(fmt::format("--toolchains {0}: {1} selects none of their lanes; add '*/{2}' to {1}",
-                                 printable(options.toolchains), where, toolchains.front().name));
+  for (const std::string& word : CLI::detail::split(options.toolchains, ',')) {
+    const std::string file = std::filesystem::absolute(word).lexically_normal().string();
+    std::string name;
+    const bool has_lane = std::any_of(toolchains.begin(), toolchains.end(), [&](const subjects::Toolchain& toolchain) {
+      if (word != "all" && toolchain.file != file && !matches_any({word}, toolchain.name)) return false;
+      name = toolchain.name;
+      return std::any_of(ids.begin(), ids.end(), [&](const std::string& id) { return id.ends_with('/' + name); });
+    });
+    if (!has_lane)
+      throw UsageError(fmt::format("--toolchains {0}: {1} selects none of its lanes; add '*/{2}' to {1}",
+                                   printable(word), where, name));
+  }
 }
 
 fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesystem::path& about,

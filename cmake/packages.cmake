@@ -19,6 +19,7 @@ install(CODE "
   execute_process(COMMAND ${PROJECT_SOURCE_DIR}/packaging/man_page $<TARGET_FILE:graze> OUTPUT_FILE ${CMAKE_BINARY_DIR}/graze.1 COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND gzip -9nkf ${CMAKE_BINARY_DIR}/graze.1 COMMAND_ERROR_IS_FATAL ANY)" COMPONENT program)
 install(FILES ${CMAKE_BINARY_DIR}/graze.1.gz DESTINATION share/man/man1 COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/subjects/include/graze/subject.h DESTINATION include/graze COMPONENT program)
 install(TARGETS graze_query_shared graze_test LIBRARY DESTINATION lib COMPONENT libraries)
 
 set(GRAZE_MAINTAINER "The Graze developers <graze@example.org>" CACHE STRING "Name and address in the Debian packages")

@@ -13,13 +13,13 @@ namespace {
 int mantissa_bits(Scalar scalar) { return scalar == Scalar::f32 ? 24 : 53; }
 
 // Sets MPFR's exponent range during its lifetime. 0.5 * 2^emin is the least positive number, and all numbers are below
-// 2^emax.
+// 2^emax. more: bits that mantissas have beyond the scalar's.
 struct ExponentRange {
   mpfr_exp_t emin = mpfr_get_emin(), emax = mpfr_get_emax();
 
-  ExponentRange(Scalar scalar, Limits limits) {
+  ExponentRange(Scalar scalar, Limits limits, int more = 0) {
     if (limits.upper) mpfr_set_emax(scalar == Scalar::f32 ? 128 : 1024);
-    if (limits.lower) mpfr_set_emin(scalar == Scalar::f32 ? -148 : -1073);
+    if (limits.lower) mpfr_set_emin((scalar == Scalar::f32 ? -148 : -1073) - more);
     Multi::subnormals = limits.lower;
     Multi::first_event = 0;
   }
@@ -142,6 +142,11 @@ Trace<double> run_limited(int algorithm, Scalar scalar, const DoublePair& pair, 
 Verdict decide_with_bits(int algorithm, const DoublePair& pair, int bits) {
   Multi::precision = bits;
   return decide_in_multi(algorithm, pair, std::make_index_sequence<kAlgorithmCount>());
+}
+
+Verdict decide_with_bits(int algorithm, const DoublePair& pair, int bits, Scalar exponents) {
+  const ExponentRange range(exponents, {true, true}, bits - mantissa_bits(exponents));
+  return decide_with_bits(algorithm, pair, bits);
 }
 
 int bits_needed(int algorithm, const DoublePair& pair, Verdict verdict, int least) {

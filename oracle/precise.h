@@ -36,11 +36,13 @@ Limited decide_limited(int algorithm, Scalar scalar, const DoublePair& pair, Lim
 Trace<double> run_limited(int algorithm, Scalar scalar, const DoublePair& pair, Limits limits, Contraction rule,
                           const Path& lead = {});
 
-// Runs the algorithm with a mantissa of `bits` bits and no exponent limits.
+// Runs the algorithm with a mantissa of `bits` bits, without exponent limits or with those of a scalar.
+// Requires: the scalar's mantissa has at most `bits` bits.
 Verdict decide_with_bits(int algorithm, const DoublePair& pair, int bits);
+Verdict decide_with_bits(int algorithm, const DoublePair& pair, int bits, Scalar exponents);
 
-// The least number n of bits, n >= `least`, such that n to kMostBits bits all give this verdict; 0 if kMostBits bits
-// give another verdict.
+// The least number n of bits, n >= `least`, such that n to kMostBits bits without exponent limits all give this
+// verdict; 0 if kMostBits bits give another verdict.
 inline constexpr int kMostBits = 512;
 int bits_needed(int algorithm, const DoublePair& pair, Verdict verdict, int least);
 

@@ -91,6 +91,8 @@ TEST(Precise, WithBothLimitsIsTheCpuLane) {
       for (const Lane& lane : published_lanes()) {
         if (lane.variant != Variant::cpu) continue;
         const Limited limited = decide_limited(lane.algorithm, lane.scalar, in_doubles(pair), {true, true});
+        const int bits = lane.scalar == Scalar::f32 ? 24 : 53;
+        ASSERT_EQ(decide_with_bits(lane.algorithm, in_doubles(pair), bits, lane.scalar), limited.verdict) << lane.id;
         EXPECT_EQ(name(limited.verdict), name(decide_one(lane.decide, pair))) << lane.id << hex(pair);
         overflows += limited.first == RangeEvent::overflow;
         underflows += limited.first == RangeEvent::underflow;

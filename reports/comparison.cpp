@@ -130,12 +130,14 @@ std::optional<double> unseen_of(const Json& before, const Json& after) {
   return share - static_cast<double>(low) / static_cast<double>(of);
 }
 
-// "differences under 0.02 % to 1.2 % (by rate and pairs) would not be seen"
+// About the rates that did not change: "differences under 0.02 % to 1.2 % (by rate and pairs) would not be seen". A
+// kind of error is a share of fewer pairs, so a smaller difference in it can be seen.
 std::string power_words(const Json& rates) {
   std::optional<double> least, most;
   std::size_t blind = 0;
   for (const Json& row : rates) {
     const Json& unseen = row.at("unseen");
+    if (row.at("changed") == true) continue;
     if (unseen.is_null()) {
       ++blind;
       continue;
@@ -146,9 +148,9 @@ std::string power_words(const Json& rates) {
   }
   const std::string none =
       blind == 0 ? "" : fmt::format("; {} of the rates have too few pairs to show any", grouped(blind));
-  if (!least) return "the campaigns have too few pairs to show a difference";
+  if (!least) return blind == 0 ? "" : "the campaigns have too few pairs to show a difference";
   const std::string from = rounded_up(100 * *least, 2), to = rounded_up(100 * *most, 2);
-  return fmt::format("differences under {} would not be seen{}",
+  return fmt::format("differences under {} might not be seen{}",
                      from == to ? to + " %" : fmt::format("{} % to {} % (by rate and pairs)", from, to), none);
 }
 
@@ -384,9 +386,10 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
     std::vector<std::string> errors;
     for (const auto& [error, count] : changed_by_error)
       errors.push_back(fmt::format("{} in {}", error, grouped(count)));
+    const std::string power = same ? "" : power_words(rows);
     headline = fmt::format("Changed: {} of {} rates{}; {}{}.", grouped(changed), grouped(rows.size()),
                            errors.empty() ? "" : fmt::format(" ({})", fmt::join(errors, ", ")), of_kinds,
-                           same ? "" : "; " + power_words(rows));
+                           power.empty() ? "" : "; in the other rates, " + power);
   }
   if (const std::string one_sided = one_sided_lanes(before, report); !one_sided.empty()) headline += ' ' + one_sided;
   Json differences = differences_of(report, before, verdicts);

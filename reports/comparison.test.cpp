@@ -60,7 +60,7 @@ TEST(Comparison, SeedAndSizeAloneChangeNothing) {
         "None of 1,000 rates changed, and no kind of failure with at least 14 expected signatures came or went; "
         "differences under "))
         << text;
-    EXPECT_TRUE(text.ends_with(" would not be seen.")) << text;
+    EXPECT_TRUE(text.ends_with(" might not be seen.")) << text;
   }
   EXPECT_LE(changed, 1);
 }
@@ -90,7 +90,12 @@ TEST(Comparison, WhatIsSmallButSureIsAChange) {
   EXPECT_TRUE(
       headline(after, before, Json::array(), Json::array())
           .starts_with("Changed: 1 of 1,000 rates; no kind of failure with at least 14 expected signatures came "
-                       "or went; differences under "));
+                       "or went; in the other rates, differences under "));
+  // If no other rate is left, nothing is said of differences that might not be seen.
+  const Json one = report_of(1, 1'000'000, 1);
+  after = report_of(2, 1'000'000, 1);
+  after["rates"][0]["wrong"] = to_json(share_of(40, 1'000'000));
+  EXPECT_TRUE(headline(after, one, Json::array(), Json::array()).ends_with("came or went."));
 }
 
 // The numbers of wrong verdicts are equal, so only the kinds of error show the change.

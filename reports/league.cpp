@@ -361,8 +361,10 @@ std::string league_table(const Json& league, const Screen& screen) {
   for (const auto& [group, count] : league.at("groups").items())
     pairs += fmt::format("{}{} {}", pairs.empty() ? "" : ", ", group, grouped(count));
   return wrapped(
-             fmt::format("False negatives / false positives within each lane's contract, on the same {} pairs ({}).",
-                         grouped(league.at("pairs")), pairs),
+             fmt::format(
+                 "False negatives / false positives within each lane's contract, on the same {} pairs ({}); slow lanes "
+                 "decided only the first ones of each stratum.",
+                 grouped(league.at("pairs")), pairs),
              screen.columns) +
          table.text(screen) +
          wrapped(fmt::format("{} smallest failures, each repeated in a fresh process; {} more were not repeated.",
@@ -374,11 +376,11 @@ std::string league_page(const Json& league, const std::string& command) {
   return fmt::format(
       R"(# League: triangle-triangle tests of libraries, side by side
 
-Made by `{command}`; do not edit. All lanes decided the same {pairs} pairs, drawn in equal shares from the strata with seed {seed}{doubles}. Lanes with the fewest clearly wrong verdicts come first.
+Made by `{command}`; do not edit. The {pairs} pairs are drawn in equal shares from the strata with seed {seed}{doubles}. All lanes decided the same pairs, but slow lanes only the first ones of each stratum. Lanes with the fewest clearly wrong verdicts come first.
 
 CGAL's exact decision and `core/exact` determine the truth for every pair; GMP confirms it if a lane is wrong. Touching counts as intersecting, and a degenerate triangle is a segment or a point. If a library's documentation says nothing about such pairs, every difference counts as an error. Columns:
 
-- **general** to **extreme**: false negatives / false positives in each group of strata. "near" has near pairs and exact contacts; "extreme" has needles, extreme coordinates and pairs far from the origin. "of N" gives the number of pairs that were counted, if it is smaller: slow lanes got only the first pairs of each stratum, and pairs outside a lane's contract do not count.
+- **general** to **extreme**: false negatives / false positives in each group of strata. "near" has near pairs and exact contacts; "extreme" has needles, coordinates of extreme or very different sizes, and pairs far from the origin. "of N" gives the number of pairs that were counted, if it is smaller: slow lanes got only the first pairs of each stratum, and pairs outside a lane's contract do not count.
 - **clear**: wrong verdicts, outside "extreme", on proper triangles that are not coplanar and whose margin is at least 2^{exponent} ulps of the largest coordinate. Neither a convention nor rounded input excuses them.
 - **declined**: pairs on which the lane gave no answer. They are not wrong.
 - **crashed**, **timed out**, **unstable**: pairs on which the lane failed, or did not always give the same verdict. They are wrong.

@@ -63,19 +63,22 @@ int rank_of(const Json& kind, const std::string& lane, std::uint64_t all) {
   return is_mistake && is_common && !is_open(kind) ? 1 : 2;
 }
 
-// Describes from which margin upwards the lane is right on these pairs.
+// Describes from which margin upwards the lane is wrong on none of these pairs. Declined pairs are not wrong, so
+// nothing is said of a lane that declines all.
 std::string trusted_from(const StratumCounts& pairs, std::size_t lane, const std::string& which) {
   std::vector<std::string> right, wrong;
+  if (pairs.lanes[lane].declined == pairs.pairs) return "";
   for (const auto& [side, how] : {std::pair(1, "apart"), {-1, "deep"}}) {
     const Threshold from = threshold(pairs, lane, side);
     if (from.found) {
-      right.push_back(fmt::format("all {} at least 2^{} ulps {}", grouped(from.above), from.exponent, how));
+      right.push_back(fmt::format("the {} at least 2^{} ulps {}", grouped(from.above), from.exponent, how));
     } else if (from.largest) {
       wrong.push_back(fmt::format("2^{} ulps {}", *from.largest, how));
     }
   }
   std::string text;
-  if (!right.empty()) text += fmt::format(" Among {} it is right on {}.", which, fmt::join(right, " and "));
+  if (!right.empty())
+    text += fmt::format(" Among {} it is wrong on none of {}.", which, fmt::join(right, " and none of "));
   if (!wrong.empty()) text += fmt::format(" It is wrong on some that are {}.", fmt::join(wrong, " and on some "));
   return text;
 }
@@ -111,7 +114,7 @@ std::string wrong_words(const CampaignCounts& counts, std::size_t lane) {
   const analysis::LaneCounts& found = counts.total.lanes[lane];
   const std::string &id = counts.lanes[lane].id, pairs = grouped(counts.total.pairs);
   if (found.wrong() == 0) {
-    const std::uint64_t decided = counts.total.pairs - found.declined - found.by_convention;
+    const std::uint64_t decided = counts.total.pairs - found.declined;
     if (decided == 0) return fmt::format("{} decides none of {} pairs.{}", id, pairs, not_counted(found));
     return fmt::format(
         "{} is wrong on none of the {} that it decides: with 95 % confidence it errs on fewer than {} of such pairs.{}",

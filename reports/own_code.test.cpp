@@ -70,6 +70,11 @@ TEST(OwnCode, WithoutErrorsSaysHowMuchTheDecidedPairsProve) {
   EXPECT_EQ(words({0, 0, 900, 0}),
             "mine/f32/cpu is wrong on none of the 100 pairs that it decides: with 95 % confidence it errs on fewer "
             "than 2.96 % of such pairs. It declines 900 pairs.");
+  CampaignCounts with_convention = counts_of(summary_of({"mine/f32/cpu"}, {"uniform"}, {0, 0, 0, 0}));
+  with_convention.total.lanes[0].by_convention = 100;  // the code decides these pairs too
+  EXPECT_EQ(wrong_words(with_convention, 0),
+            "mine/f32/cpu is wrong on none of the 1,000 pairs that it decides: with 95 % confidence it errs on fewer "
+            "than 0.3 % of such pairs. It differs on 100 pairs for which its convention promises nothing.");
   EXPECT_EQ(words({0, 0, 1000, 0}), "mine/f32/cpu decides none of 1,000 pairs. It declines 1,000 pairs.");
   EXPECT_EQ(other_builds(counts_of(summary_of({"mine/f32/cpu"}, {"uniform"}, {0, 0, 0, 0})), 0), "");
 }
@@ -156,7 +161,7 @@ TEST(OwnCode, AnEpsilonIsNamedOnlyIfAFailureShowsIt) {
   const CampaignCounts counts = counts_of(summary);
   const std::size_t lane = own_lanes(counts).at(0);
   const std::string none = epsilon_words(counts, lane, Json{kind_of("mine", "logic", "general", 7)});
-  EXPECT_TRUE(names(none, {"no failure", "absolute epsilon", "all 500", "2^1 ulps apart"})) << none;
+  EXPECT_TRUE(names(none, {"no failure", "absolute epsilon", "none of the 500", "2^1 ulps apart"})) << none;
   const std::string not_named =
       epsilon_words(counts, lane, Json{kind_of("mine", "logic", "general", 7)}, "1e-6f at mine.cpp:9");
   EXPECT_TRUE(names(not_named, {"no failure", "such as your 1e-6f at mine.cpp:9"})) << not_named;

@@ -25,7 +25,8 @@ inline constexpr GroupInfo kGroups[] = {
     {Group::coplanar, "coplanar",
      "triangles in one plane, nearly in one plane, or in parallel planes; some small ones pierce a larger one"},
     {Group::degenerate, "degenerate", "segments and points in place of triangles, often or always"},
-    {Group::extreme, "extreme", "needles, coordinates of extreme size, and pairs far from the origin"},
+    {Group::extreme, "extreme",
+     "needles, coordinates of extreme or very different sizes, and pairs far from the origin"},
     {Group::mesh, "mesh", "pairs of a mesh's triangles whose boxes overlap"},
 };
 

@@ -318,6 +318,18 @@ TEST_F(DiscrepancyCommand, ComparesTheCodeOfACampaign) {
   expect_out(compare + "p", {"moller_1997/f32/cpu"});
 }
 
+TEST_F(DiscrepancyCommand, AVerdictThatAConventionAllowsIsNotCalledRight) {
+  for (const int answer : {0, 1})
+    std::ofstream(shell.folder / (std::to_string(answer) + ".py"))
+        << "import sys\nfor line in sys.stdin: print('{\"outside\": [\"touching\", \"shared\"]}' if line == "
+           "'describe\\n' else "
+        << answer << ", flush=True)\n";
+  expect_out(
+      "graze discrepancy none/f32/cpu all/f32/cpu --subject 'none=cmd:python3 0.py' --subject 'all=cmd:python3 1.py' "
+      "--strata shared_vertex --pairs 40 --out d",
+      {"is right or allowed by its convention on 0 pairs"});
+}
+
 TEST_F(DiscrepancyCommand, ComparesTwoResults) {
   const std::string run = "graze discrepancy --executor twin --strata thesis --pairs 2000 moller_1997/f32/cpu ";
   expect_done(run + "moller_1997/f32/cuda-fma --out a");

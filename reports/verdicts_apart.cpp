@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
@@ -150,8 +151,12 @@ std::string verdicts_sentence(const Json& of) {
                   text_at(of, "first"), text_at(of, "second"), rate(number_at(total, "differs")), grouped(pairs),
                   rate(wrong(total, 0)), rate(wrong(total, 1)));
   const auto count = [&](const char* key) { return grouped(number_at(total, key)); };
+  const bool by_convention = std::any_of(std::begin(kOf), std::end(kOf), [&](const char* lane) {
+    return fuzz::counts_of(total.at(lane)).by_convention > 0;
+  });
   if (number_at(total, "differs") > 0)
-    verdicts += fmt::format("Where they differ, {} alone is right on {} pairs, {} alone on {}. ", text_at(of, "first"),
+    verdicts += fmt::format("Where they differ, {} alone is right{} on {} pairs, {} alone on {}. ",
+                            text_at(of, "first"), by_convention ? " or allowed by its convention" : "",
                             count("only_first_right"), text_at(of, "second"), count("only_second_right"));
   if (text_at(of, "first").ends_with("/cuda-nofma") && text_at(of, "second").ends_with("/cuda-fma"))
     verdicts += "Built with -fmad=false, your code gives the verdicts of cuda-nofma. ";

@@ -31,8 +31,11 @@ def campaign(out: "str | os.PathLike[str]", **options: Any) -> dict[str, Any]:
     A list repeats an option; True passes the option without a value.
 
     Returns: the campaign's summary.json, whose keys docs/formats.md lists.
-    Raises: FileNotFoundError if there is no program; RuntimeError with the program's message if it fails.
+    Raises: FileNotFoundError if there is no program; RuntimeError with the program's message if it fails; ValueError
+    for a shard, which has no summary until `graze merge` has run.
     """
+    if "shard" in options:
+        raise ValueError("a shard has no summary.json; run `graze fuzz --shard` and `graze merge` instead")
     arguments = ["fuzz", "--out", os.fspath(out)]
     for name, value in options.items():
         for one in value if isinstance(value, (list, tuple)) else [value]:

@@ -312,6 +312,8 @@ class Arrays(unittest.TestCase):
             self.assertEqual(summary["strata"]["near_edge_edge"]["pairs"], 300)
             with self.assertRaisesRegex(RuntimeError, "no_such"):
                 graze.campaign(out, strata="no_such")
+            with self.assertRaisesRegex(ValueError, "graze merge"):
+                graze.campaign(out, shard="1/2")
         pair = graze.Pair("0 0 0  1 0 0  0 1 0   0 0 0  0 0 1  0 1 1")
         program = os.environ["GRAZE"]
         with tempfile.TemporaryDirectory() as folder:

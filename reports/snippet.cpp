@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -117,19 +118,19 @@ std::string_view file_of(SnippetKind kind) {
 // The vertices of one triangle in the kind's language; C++ shows decimals beside the exact values.
 template <class Real>
 std::string vertices(SnippetKind kind, const Vec3<Real> (&triangle)[3], char label) {
-  constexpr bool kFloat = std::is_same_v<Real, float>;
   std::string text;
   for (int i = 0; i < 3; ++i) {
     const Vec3<Real>& v = triangle[i];
     const std::string x = corpus::hex_float(v.x), y = corpus::hex_float(v.y), z = corpus::hex_float(v.z);
-    // Nine digits identify a float32, even if they are read as a double first; seventeen identify a double.
-    const std::string decimals = fmt::format("{0:.{3}g} {1:.{3}g} {2:.{3}g}", v.x, v.y, v.z, kFloat ? 9 : 17);
+    // These digits identify a float32, even if they are read as a double first, and a double.
+    constexpr int kDigits = std::numeric_limits<Real>::max_digits10;
+    const std::string decimals = fmt::format("{0:.{3}g} {1:.{3}g} {2:.{3}g}", v.x, v.y, v.z, kDigits);
     if (kind == SnippetKind::python) {
       text += fmt::format("{}\"{} {} {}\"", i > 0 ? ",\n     " : "", x, y, z);
     } else if (kind == SnippetKind::obj) {
       text += fmt::format("# {} {} {}\nv {}\n", x, y, z, decimals);
     } else {
-      const char* suffix = kFloat ? "f" : "";
+      const char* suffix = std::is_same_v<Real, float> ? "f" : "";
       text += fmt::format("    {0}{6}, {1}{6}, {2}{6},  // {3}[{4}]: {5}\n", x, y, z, label, i, decimals, suffix);
     }
   }

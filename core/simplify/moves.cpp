@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <type_traits>
 
 #include "core/simplify/simplicity.h"
 
@@ -18,9 +17,9 @@ namespace {
 template <class Real>
 using Pairs = std::vector<BasicPair<Real>>;
 
-// The number of bits in the finest lattice that coordinates are rounded to.
+// The number of bits in the finest lattice that coordinates are rounded to; nearest_whole takes no more than 51.
 template <class Real>
-constexpr int kLatticeBits = std::is_same_v<Real, float> ? 24 : 51;
+constexpr int kLatticeBits = std::min(std::numeric_limits<Real>::digits, 51);
 
 template <class Real>
 const Vec3<Real>& vertex(const BasicPair<Real>& pair, int i) {

@@ -361,7 +361,7 @@ void add_query(CLI::App& app, int& status) {
                                          "two");
   command->footer(
       "Exit status: 0 whatever is found; 1 if a file\ncannot be read or written, or there is no GPU;\n2 for wrong use; "
-      "130 if interrupted while it decides.\n\n"
+      "130 if interrupted while\nit decides.\n\n"
       "Example: graze query arm.off#0 arm.off --json\n"
       "Example: graze query --self arm.off --csv pairs.csv\n"
       "Example: graze query arm.off table.off --between --csv pairs.csv");

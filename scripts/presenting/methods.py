@@ -191,8 +191,9 @@ def league(r):
         f"have such verdicts in float64 too ({', '.join(double)}). CGAL appears only with its kernel that computes in "
         "plain float32; its exact kernels have no such verdicts. None of the pairs is from an application, and a "
         "library without such verdicts can still fail on closer pairs: [the league](../league.md) has all groups. Each "
-        f"of the {word(findings)} [findings](../league.md#findings) has the smallest pair and a program that shows the "
-        "failure with Debian 12's packages. Nothing was sent to the libraries' authors.",
+        f"of these {word(findings)} findings has the smallest pair and a program that shows the failure with Debian 12's "
+        "packages; the [list](../league.md#findings) has more, about libraries from npm that are not in the "
+        "league. Nothing was sent to the libraries' authors.",
         dots(alt, f"clearly wrong verdicts, of at most {count(pairs)} (logarithmic)", rows, (0, 4)),
         alt,
         main=("league", "pairs that go to the lanes"),

@@ -65,8 +65,7 @@ TEST_F(TryCommand, TheFolderIsACampaigns) {
   EXPECT_EQ(answer["wrong"]["count"], wrong);
   EXPECT_EQ(answer["wrong"]["of"], 2000);
   std::uint64_t by_kind = 0;
-  for (const auto& [kind, share] : answer["wrong_by_kind_of_pair"].items())
-    by_kind += share["count"].get<std::uint64_t>();
+  for (const auto& [kind, share] : answer["wrong_by_group"].items()) by_kind += share["count"].get<std::uint64_t>();
   EXPECT_EQ(by_kind, wrong);
   ASSERT_EQ(answer["failures"].size(), 3u);
   for (const Json& failure : answer["failures"]) {
@@ -274,7 +273,7 @@ TEST_F(TryCommand, AMeshOrASceneSaysWhereThePairsAreDrawn) {
   write("arm.off", mesh.str());
   write("mine.cpp", kBoxes);
   const Json on_mesh = answer_of("mine.cpp:meet arm.off --pairs 400 --out m");
-  EXPECT_TRUE(on_mesh["wrong_by_kind_of_pair"].contains("mesh")) << on_mesh.dump(1);
+  EXPECT_TRUE(on_mesh["wrong_by_group"].contains("mesh")) << on_mesh.dump(1);
   const Json in_scene = answer_of("mine.cpp:meet m.toml --pairs 400 --out s");
   EXPECT_EQ(in_scene["wrong"], on_mesh["wrong"]);
   EXPECT_EQ(on_mesh["scene"], "m.toml");

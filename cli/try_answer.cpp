@@ -213,7 +213,7 @@ Json to_json(const Answer& answer, const fuzz::SelectedLanes& under_test) {
                {"pairs", counts.total.pairs},
                {"seed", counts.seed},
                {"wrong", reports::to_json(share_of(counts.total.wrong(lane), counts.total.pairs))},
-               {"wrong_by_kind_of_pair", groups},
+               {"wrong_by_group", groups},
                {"wrong_by_build", builds},
                {"failures", failures},
                {"epsilon", reports::epsilon_words(counts, lane, answer.kinds, answer.epsilon.named, answer.effect)},

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "core/text.h"
@@ -269,6 +270,7 @@ std::string dangerous(const CampaignCounts& counts, const LaneIndices& lanes) {
     const StratumCounts* stratum;
     double share;
     std::size_t best;
+    bool all_count;  // whether no verdict was declined or excused by a convention
   };
   std::vector<Danger> all;
   for (const StratumCounts& stratum : counts.strata) {
@@ -278,7 +280,11 @@ std::string dangerous(const CampaignCounts& counts, const LaneIndices& lanes) {
     const std::size_t best = *std::min_element(lanes.begin(), lanes.end(), [&](std::size_t l, std::size_t r) {
       return stratum.lanes[l].not_right() < stratum.lanes[r].not_right();
     });
-    all.push_back({&stratum, wrong / static_cast<double>(stratum.pairs) / static_cast<double>(lanes.size()), best});
+    const bool all_count = std::all_of(lanes.begin(), lanes.end(), [&](std::size_t l) {
+      return stratum.lanes[l].declined + stratum.lanes[l].by_convention == 0;
+    });
+    all.push_back(
+        {&stratum, wrong / static_cast<double>(stratum.pairs) / static_cast<double>(lanes.size()), best, all_count});
   }
   std::stable_sort(all.begin(), all.end(), [](const Danger& l, const Danger& r) { return l.share > r.share; });
   const char* whose = lanes.size() < counts.lanes.size() ? "the published lanes' verdicts" : "all verdicts";
@@ -299,9 +305,14 @@ std::string dangerous(const CampaignCounts& counts, const LaneIndices& lanes) {
   std::vector<std::string> worst;
   for (std::size_t i = 0; i < std::min<std::size_t>(3, all.size() - 1) && all[i].share > 0; ++i)
     worst.push_back(described(all[i]));
-  return fmt::format("The most dangerous {} {}; the safest is {} ({}).",
-                     worst.size() == 1 ? "stratum is" : "strata are", list_of(worst), all.back().stratum->id,
-                     all.back().share == 0 ? "no wrong verdict" : rate_words(all.back().share));
+  std::string text =
+      fmt::format("The most dangerous {} {}", worst.size() == 1 ? "stratum is" : "strata are", list_of(worst));
+  const auto worst_of_all = all.rend() - static_cast<std::ptrdiff_t>(worst.size());
+  const auto safest = std::find_if(all.rbegin(), worst_of_all, std::mem_fn(&Danger::all_count));
+  if (safest != worst_of_all)
+    text += fmt::format("; the safest{} is {} ({})", safest == all.rbegin() ? "" : " on which every verdict counts",
+                        safest->stratum->id, safest->share == 0 ? "no wrong verdict" : rate_words(safest->share));
+  return text + '.';
 }
 
 }  // namespace

@@ -29,6 +29,21 @@ TEST(Answer, OfOneLaneComparesNothing) {
   EXPECT_TRUE(contains(said[5], "were not drawn"));
 }
 
+// Nothing shows that a stratum is safe if verdicts on it were declined.
+TEST(Answer, CallsAStratumSafeOnlyIfEveryVerdictCounts) {
+  Json summary = summary_of({"mine/f32/cpu"}, {"uniform", "lattice", "shared_edge"}, {});
+  Json& strata = summary["strata"];
+  const auto of = [&](const char* stratum) -> Json& { return strata[stratum]["lanes"]["mine/f32/cpu"]; };
+  of("lattice")["false_positive"] = 50;
+  of("uniform")["false_positive"] = 5;
+  EXPECT_TRUE(says(summary, "; the safest is shared_edge (no wrong verdict)."));
+  of("shared_edge")["declined"] = 1000;
+  EXPECT_TRUE(says(summary, "The most dangerous strata are lattice (5 % of all verdicts wrong) and uniform"));
+  EXPECT_FALSE(says(summary, "safest"));
+  of("uniform")["false_positive"] = 0;
+  EXPECT_TRUE(says(summary, "; the safest on which every verdict counts is uniform (no wrong verdict)."));
+}
+
 // The share of wrong verdicts leaves out exact lanes, because they are never wrong.
 TEST(Answer, NamesTheLanesOfAStratumsShare) {
   Json summary = summary_of({"moller_1997/f32/cpu", "exact/f32/cpu"}, {"uniform"}, {});

@@ -261,8 +261,8 @@ std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const 
   // With triangles of other sizes, the code fails at other distances, so no margin is named.
   if (settled > 0) return text + "; make it relative to the triangles' size.";
   std::string trusted;
-  for (const auto& [id, which] :
-       {std::pair("general", "the general pairs"), {"general/f64", "the general pairs of doubles"}}) {
+  for (const auto& [id, which] : {std::pair("general", "the pairs of the group general"),
+                                  {"general/f64", "the pairs of doubles of the group general"}}) {
     if (const GroupCounts* group = counts.group(id)) trusted += trusted_from(group->counts, lane, which);
   }
   return text + '.' + (trusted.empty() ? trusted_from(counts.total, lane, "all pairs") : trusted);

@@ -100,13 +100,13 @@ def which(r):
         kind = {"f32": "c", "f64": "a"}[scalar] if name != "exact" else "b"
         rows.append((label, 100 * wrong("general", lane) / pairs, share("general", lane), kind))
     alt = (
-        f"Share of wrong verdicts on {count(pairs)} general pairs: from "
+        f"Share of wrong verdicts on {count(pairs)} pairs of the group general: from "
         f"{percent(wrong('general', lanes['f32'][1]), pairs)} of interval_overlap in float32 to "
         f"{share('general', axes)} of separating_axes in float64; exact has none."
     )
     return Result(
         "which",
-        f"In float64 `separating_axes` errs least, on {share('general', axes)} of hard general pairs, against "
+        f"In float64 `separating_axes` errs least, on {share('general', axes)} of hard pairs in the group `general`, against "
         f"{percent(others[0], pairs)} to {percent(others[-1], pairs)} for the other {word(len(others))} published "
         "tests",
         f"The default campaign ran every test on {count(wrong_in(r, 'all', axes)[1])} pairs of nineteen strata "
@@ -115,15 +115,17 @@ def which(r):
         f"triangles are random, {word(len(right))} of {word(len(both))} lanes (a test in a precision) are right on "
         f"all {count(wrong_in(r, 'uniform', axes)[1])} pairs (95 %: wrong on at most "
         f"{at_most_percent(wrong_in(r, 'uniform', axes)[1])}); `projected_sat` is wrong on "
-        f"{share('uniform', lanes['f64'][0])}, in float64 too, because its logic is wrong. On general pairs "
-        "(triangles of usual shape and size, most of them with near or exact contacts) `separating_axes` in float64 "
-        f"is wrong on {share('general', axes)} (95 % interval {percent_interval(wrong('general', axes), pairs)}). It "
-        f"also errs least on coplanar ({share('coplanar', axes)}), degenerate ({share('degenerate', axes)}) and "
-        f"extreme pairs ({share('extreme', axes)}). If you must stay in float32, it again errs least "
-        f"({share('general', axes32)} of general pairs), except on needles and extreme coordinates, where "
-        f"`guigue_devillers_2003` errs least ({share('extreme', devillers32)} against {share('extreme', axes32)}). If "
-        "a wrong verdict matters, use `exact`, which is wrong on no pair.",
-        bars(alt, f"% of {count(pairs)} general pairs on which a test is wrong", rows),
+        f"{share('uniform', lanes['f64'][0])}, in float64 too, because its logic is wrong. In the group of strata "
+        "`general` (triangles of usual shape and size, most of them with near or exact contacts) `separating_axes` in "
+        f"float64 is wrong on {share('general', axes)} (95 % interval "
+        f"{percent_interval(wrong('general', axes), pairs)}). It also errs least in the groups `coplanar` "
+        f"({share('coplanar', axes)}), `degenerate` ({share('degenerate', axes)}) and `extreme` "
+        f"({share('extreme', axes)}). A group's name says what its strata aim at, not what each of its pairs is; "
+        "`graze strata` describes them. If you must stay in float32, `separating_axes` again errs least "
+        f"({share('general', axes32)} in `general`), except in `extreme`, where `guigue_devillers_2003` errs least "
+        f"({share('extreme', devillers32)} against {share('extreme', axes32)}). If a wrong verdict matters, use "
+        "`exact`, which is wrong on no pair.",
+        bars(alt, f"% of {count(pairs)} pairs of the group general on which a test is wrong", rows),
         alt,
         main=("campaign", f"Wrong verdicts of the default campaign, `{axes}`: general"),
     )

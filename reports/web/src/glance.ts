@@ -64,13 +64,13 @@ export function glance(report: Report, costs: Costs | null) {
         name: row.name,
         group: id,
         x: axis.place(share.share),
-        words: `${row.name}\n${id} pairs: ${in_full(share)}`,
+        words: `${row.name}\ngroup ${id}: ${in_full(share)}`,
       };
     }),
   );
   const of_type = report.groups.some(({ id }) => id === 'general/f64') ? ' of float32' : '';
   const pair = `${cost_ground(report) === null ? 'a pair' : `a general pair${of_type}`}, many pairs a call`;
-  const title = `Wrong verdicts of each lane, by kind of pair${rows.some((row) => row.cost) ? `, and its cost for ${pair}` : ''}`;
+  const title = `Wrong verdicts of each lane, by group of strata${rows.some((row) => row.cost) ? `, and its cost for ${pair}` : ''}`;
   const element = h('div', { class: 'chart' });
   const said = rows
     .map((row) => {
@@ -78,7 +78,7 @@ export function glance(report: Report, costs: Costs | null) {
         const share = share_of(row, g);
         return `${share.count ? percent(share.share) : 'none'} of ${id}`;
       });
-      return `${row.name}: wrong on ${groups.join(', ')} pairs${row.cost && `; ${row.cost}`}`;
+      return `${row.name}: wrong on ${groups.join(', ')}${row.cost && `; ${row.cost}`}`;
     })
     .join('. ');
 

@@ -46,7 +46,7 @@ export function margins_section(report: Report) {
 
   // The strata of a threshold: a group of strata, one stratum, or all strata.
   const kinds: { id: string; label: string; is: (t: Row) => boolean }[] = [
-    ...report.groups.map(({ id }, g) => ({ id, label: `${id} pairs`, is: (t: Row) => t.group === g })),
+    ...report.groups.map(({ id }, g) => ({ id, label: `group ${id}`, is: (t: Row) => t.group === g })),
     { id: 'all', label: 'all strata together', is: (t: Row) => t.group === null && t.stratum === null },
     ...report.strata.map(({ id }, s) => ({ id: `stratum ${id}`, label: id, is: (t: Row) => t.stratum === s })),
   ];

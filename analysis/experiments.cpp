@@ -343,7 +343,7 @@ class Trial {
     const bool by_range = kIsNarrow && (!ask_.in_float64() || ask_.right_in_float64());
     const std::string text = turn.text(),
                       doubles = by_float64 ? ", and in float64 it is right at all scales that were tried" : "";
-    if (turn.right > turn.wrong) {
+    if (turn.upwards()) {
       if (!by_float64 && kUsualFactors * (size_.smallest_difference + turn.wrong) >= limits().least)
         return {Cause::absolute_epsilon, false,
                 text + fmt::format(", though products of its differences are not too small for {}", limits().name)};

@@ -269,11 +269,8 @@ bool same_run(const Lane& l, const Lane& r) {
 }
 
 template <class Real>
-void add_surroundings(LaneExplanation& result, Verdict truth, int bits_needed, bool bits_alone,
-                      const Neighbours<Real>& neighbours) {
+void add_surroundings(LaneExplanation& result, Verdict truth, const Neighbours<Real>& neighbours) {
   const Lane& lane = *result.lane;
-  result.bits_needed = bits_needed;
-  result.bits_alone = bits_alone;
   result.orders = wrong_of(lane, neighbours.orders, truth);
   result.mirrored = wrong_of(lane, neighbours.mirrored, truth);
   result.scalings = wrong_of(lane, neighbours.scalings, truth);
@@ -389,21 +386,21 @@ Explanation explain(const AnyPair& pair, std::span<const Lane* const> lanes) {
     // If every verdict may time out or need a new process, only the pair itself is tried.
     if (lane.slow) continue;
     const AnyPair own = seen_by(*lane.lane, pair);
-    int needed = 0;
     if (!lane.by_experiment()) {
       const std::pair key(lane.lane->info, own.floats.has_value());
       auto found = bits.find(key);
       if (found == bits.end())
         found = bits.emplace(key, bits_needed(lane.lane->algorithm, lane.exactly, own, truth)).first;
       const bool f32 = lane.lane->scalar == Scalar::f32;
-      needed = f32 || found->second == 0 ? found->second : std::max(found->second, 53);
+      const int needed = f32 || found->second == 0 ? found->second : std::max(found->second, 53);
+      lane.bits_needed = needed;
+      lane.bits_alone =
+          needed > 0 && oracle::decide_with_bits(lane.lane->algorithm, own.doubles, needed, lane.lane->scalar) == truth;
     }
-    const bool alone =
-        needed > 0 && oracle::decide_with_bits(lane.lane->algorithm, own.doubles, needed, lane.lane->scalar) == truth;
     visit(own, [&]<class Real>(const BasicPair<Real>& stored) {
       auto& neighbours = std::get<std::optional<Neighbours<Real>>>(around);
       if (!neighbours) neighbours.emplace(stored, truth);
-      add_surroundings(lane, truth, needed, alone, *neighbours);
+      add_surroundings(lane, truth, *neighbours);
     });
   }
   return result;

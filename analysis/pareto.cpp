@@ -72,7 +72,7 @@ double nanoseconds_of(const DecideBlock& lane, const std::vector<PairOf>& pairs,
   } else {
     for (const PairOf& pair : pairs) lane(&pair, 1, &intersects, &declined);
   }
-  // A time of zero or less is noise: the pass took less time than reading the clock may vary.
+  // A pass never takes no time, but the clock may show less than it takes to read the clock.
   const double taken = std::max(1.0, processor_nanoseconds() - start - nanoseconds_of_the_clock());
   return taken / static_cast<double>(pairs.size());
 }

@@ -99,6 +99,9 @@ TEST_F(Inputs, WrongWordsAreNamedWithWhatIsNearest) {
   expect_error("graze dump uniform --pairs 2 --toolchains x86-gcc", 2, {"--toolchains", "--lanes"});
   expect_error("graze fuzz --pairs 2 --toolchains x86-gcc,x86-clang --lanes '*/x86-gcc'", 2,
                {"--toolchains", "x86-clang", "--lanes"});
+  expect_done(
+      "printf '[[toolchain]]\nname = \"mine\"\ncxx = \"c++ -O2\"\n' | tee first.toml > second.toml; "
+      "graze lanes --toolchains first.toml,second.toml --lanes 'moller_1997/f32/mine'");
   expect_error("graze dump uniform --pairs 2 --executor twin", 2, {"--executor", "--lanes"});
   expect_error("graze scene a.toml --sufficient 1e-3 --poses p.csv", 2, {"--poses"});
   expect_error("graze scene a.toml --sufficient 1e-3 --units mm", 2, {"--units"});

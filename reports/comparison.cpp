@@ -130,14 +130,14 @@ std::optional<double> unseen_of(const Json& before, const Json& after) {
   return share - static_cast<double>(low) / static_cast<double>(of);
 }
 
-// About the rates that did not change: "differences under 0.02 % to 1.2 % (by rate and pairs) would not be seen". A
+// About the rates that did not change: "differences under 0.02 % to 1.2 % (by rate and pairs) might not be seen". A
 // kind of error is a share of fewer pairs, so a smaller difference in it can be seen.
 std::string power_words(const Json& rates) {
   std::optional<double> least, most;
   std::size_t blind = 0;
   for (const Json& row : rates) {
-    const Json& unseen = row.at("unseen");
     if (row.at("changed") == true) continue;
+    const Json& unseen = row.at("unseen");
     if (unseen.is_null()) {
       ++blind;
       continue;

@@ -66,8 +66,8 @@ int rank_of(const Json& kind, const std::string& lane, std::uint64_t all) {
 // Describes from which margin upwards the lane is wrong on none of these pairs. Declined pairs are not wrong, so
 // nothing is said of a lane that declines all.
 std::string trusted_from(const StratumCounts& pairs, std::size_t lane, const std::string& which) {
-  std::vector<std::string> right, wrong;
   if (pairs.lanes[lane].declined == pairs.pairs) return "";
+  std::vector<std::string> right, wrong;
   for (const auto& [side, how] : {std::pair(1, "apart"), {-1, "deep"}}) {
     const Threshold from = threshold(pairs, lane, side);
     if (from.found) {

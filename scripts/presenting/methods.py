@@ -106,8 +106,8 @@ def which(r):
     )
     return Result(
         "which",
-        f"In float64 `separating_axes` errs least, on {share('general', axes)} of hard pairs in the group `general`, against "
-        f"{percent(others[0], pairs)} to {percent(others[-1], pairs)} for the other {word(len(others))} published "
+        f"In float64 `separating_axes` errs least, on {share('general', axes)} of hard pairs in the group `general`, "
+        f"against {percent(others[0], pairs)} to {percent(others[-1], pairs)} for the other {word(len(others))} published "
         "tests",
         f"The default campaign ran every test on {count(wrong_in(r, 'all', axes)[1])} pairs of nineteen strata "
         "(`thesis_special` and `nested` were added later). Most of its pairs are near contact by design, so the "
@@ -193,8 +193,8 @@ def league(r):
         f"have such verdicts in float64 too ({', '.join(double)}). CGAL appears only with its kernel that computes in "
         "plain float32; its exact kernels have no such verdicts. None of the pairs is from an application, and a "
         "library without such verdicts can still fail on closer pairs: [the league](../league.md) has all groups. Each "
-        f"of these {word(findings)} findings has the smallest pair and a program that shows the failure with Debian 12's "
-        "packages; the [list](../league.md#findings) has more, about libraries from npm that are not in the "
+        f"of these {word(findings)} findings has the smallest pair and a program that shows the failure with Debian "
+        "12's packages; the [list](../league.md#findings) has more, about libraries from npm that are not in the "
         "league. Nothing was sent to the libraries' authors.",
         dots(alt, f"clearly wrong verdicts, of at most {count(pairs)} (logarithmic)", rows, (0, 4)),
         alt,

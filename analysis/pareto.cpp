@@ -146,7 +146,7 @@ strata::PairBlock first_pairs(std::span<const strata::PairSource> sources, std::
 bool is_dominated(const Offer& offer, const std::vector<Offer>& offers, std::optional<Cost> Offer::*by) {
   return std::any_of(offers.begin(), offers.end(), [&](const Offer& other) {
     if (!(offer.*by && other.*by)) return false;
-    const double own = offer.errors.share_not_right(), others = other.errors.share_not_right();
+    const double own = offer.errors.share_not_true(), others = other.errors.share_not_true();
     const Cost &cost = *(offer.*by), &of_other = *(other.*by);
     return others < own ? of_other.middle <= cost.middle : others == own && of_other.high < cost.low;
   });
@@ -174,7 +174,7 @@ std::vector<strata::PairSource> made_extreme(std::span<const strata::PairSource>
 
 std::vector<ErrorsAt> ExtremeCurve::errors() const {
   std::vector<ErrorsAt> result;
-  for (const auto& [exponent, found] : points) result.push_back({exponent, found.not_right(), found.pairs});
+  for (const auto& [exponent, found] : points) result.push_back({exponent, found.not_true(), found.pairs});
   return result;
 }
 

@@ -27,6 +27,13 @@ TEST(Pareto, TheFrontIsWhatNothingBeats) {
   EXPECT_EQ(dominated, (std::vector<bool>{false, false, true, false, true, false, false}));
 }
 
+TEST(Pareto, AVerdictThatAConventionAllowsIsNoCorrectOne) {
+  std::vector<Offer> offers = {offer(0, 40), offer(0, 9)};
+  offers[1].errors.by_convention = 1;
+  mark_dominated(offers);
+  EXPECT_FALSE(offers[0].dominated || offers[1].dominated);
+}
+
 TEST(Pareto, ADifferenceWithinTheSpreadsDominatesNothing) {
   std::vector<Offer> offers = {offer(0, 18), offer(0, 17.9), offer(0, 15)};
   offers[1].near = Cost{17, 17.9, 18.5};
@@ -123,7 +130,7 @@ TEST(Extremes, AreTrueOfFreshPairs) {
     std::map<int, std::vector<PolicyErrors>> fresh;
     const auto share = [&](int k, std::size_t lane) {
       if (!fresh.contains(k)) fresh[k] = measured(2, 20'000, extreme, k);
-      return fresh[k][lane].share_not_right();
+      return fresh[k][lane].share_not_true();
     };
     for (std::size_t l = 0; l < lanes.size(); ++l) {
       const auto range = right_range(curves[l].errors());

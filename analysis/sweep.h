@@ -28,8 +28,8 @@ struct PolicyErrors : Counts {
   std::uint64_t fixed = 0, broken = 0;  // pairs that are right only with the policy; only without it
   std::optional<PairPlace> first_fixed, first_broken;
 
-  double share_not_right() const {
-    return pairs == 0 ? 0 : static_cast<double>(not_right()) / static_cast<double>(pairs);
+  double share_not_true() const {
+    return pairs == 0 ? 0 : static_cast<double>(not_true()) / static_cast<double>(pairs);
   }
   bool changes_nothing() const { return fixed == 0 && broken == 0; }
   PolicyErrors& operator+=(const PolicyErrors& other);

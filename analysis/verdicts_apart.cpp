@@ -40,22 +40,23 @@ std::vector<VerdictsApart> verdicts_apart(const TwoDeciders& deciders, const std
       const Relation truth = visit(pair, [](const auto& own) { return relation_or_declined(own); });
       if (truth.verdict == Verdict::declined) continue;
       ++to.pairs;
-      bool right[2];  // or permitted by the code's convention
+      bool wrong[2];
       for (int lane = 0; lane < 2; ++lane) {
         const Verdict verdict = verdicts[lane][i];
-        right[lane] = verdict == truth.verdict;
-        if (right[lane]) continue;
-        right[lane] = by_convention(*deciders.lanes[lane], verdict, pair, truth);
-        ++(right[lane] ? to.of[lane].by_convention : to.of[lane].of(verdict));
+        wrong[lane] = false;
+        if (verdict == truth.verdict) continue;
+        const bool excused = by_convention(*deciders.lanes[lane], verdict, pair, truth);
+        ++(excused ? to.of[lane].by_convention : to.of[lane].of(verdict));
+        wrong[lane] = !excused && is_wrong(verdict, truth.verdict);
       }
       if (verdicts[0][i] == verdicts[1][i]) continue;
       const PairPlace place{block.source, block.first + i};
       ++to.differs;
       keep_simplest(to.simplest, place);
-      if (right[0] && !right[1]) {
+      if (wrong[1] && !wrong[0]) {
         ++to.broken;
         keep_simplest(to.simplest_broken, place);
-      } else if (right[1] && !right[0]) {
+      } else if (wrong[0] && !wrong[1]) {
         ++to.mended;
         keep_simplest(to.simplest_mended, place);
       }

@@ -17,7 +17,7 @@ struct VerdictsApart {
   std::uint64_t differs = 0;             // pairs on which the two verdicts differ
   Counts of[2];                          // each lane's errors
   std::optional<PairPlace> simplest;     // the simplest pair on which they differ
-  std::uint64_t broken = 0, mended = 0;  // differing pairs on which only the first (second) lane is right
+  std::uint64_t broken = 0, mended = 0;  // differing pairs on which only the second (first) lane is wrong
   std::optional<PairPlace> simplest_broken, simplest_mended;
 
   bool operator==(const VerdictsApart&) const = default;

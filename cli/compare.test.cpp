@@ -133,6 +133,34 @@ TEST_F(Compare, TheSameVerdictsAreProvedSoAndNothingElseIs) {
   EXPECT_TRUE(names(counts.out.substr(0, counts.out.find('\n')), {"database"})) << counts.out;
 }
 
+// Only wrong verdicts became wrong or were it: not those that were declined, nor those that a convention allows.
+TEST_F(Compare, DeclinedAndAllowedVerdictsAreNotCalledWrong) {
+  const auto run = [](const std::string& answer, const std::string& strata, const std::string& out) {
+    return "cat > mine.c <<'EOF'\n#include <graze/subject.h>\n"
+           "int meet(const float* a, const float* b) { (void)b; return " +
+           answer + "; }\nGRAZE_SUBJECT(graze_subject) = {.abi = GRAZE_SUBJECT_ABI, .f32 = meet, " +
+           ".outside = GRAZE_OUTSIDE_DEGENERATE};\nEOF\ngraze fuzz --subject mine=./mine.c:graze_subject "
+           "--flags=-I" GRAZE_SOURCE_DIR "/subjects/include --lanes 'mine/f32/cpu,!exact/*' --pairs 1000 --strata " +
+           strata + " --out " + out;
+  };
+  expect_done(fuzz(run("a[0] > 0", "uniform", "before")) + run("a[0] > 0 ? -1 : 0", "uniform", "after"));
+  const Ran declined = shell.done("export XDG_CACHE_HOME=$PWD/cache; graze report --compare before after");
+  const nlohmann::json compare = json("after/compare.json")["compare"], row = compare["verdicts"][0];
+  const std::uint64_t then = compare["rates"][0]["before"]["count"], now = compare["rates"][0]["after"]["count"];
+  EXPECT_EQ(row["broken"], 0);
+  EXPECT_EQ(row["mended"], then - now);
+  EXPECT_GT(row["least"], row["mended"]);  // some were right, and are declined
+  EXPECT_TRUE(has(declined.out, {": 0 became wrong, ", " no longer wrong, ", " changed otherwise"})) << declined.out;
+  // All pairs are outside the convention, so no verdict is wrong, and nothing is said of how rarely the code errs.
+  expect_done(fuzz(run("1", "degenerate", "one")) + run("a[0] > 0", "degenerate", "other"));
+  const Ran allowed = shell.done("export XDG_CACHE_HOME=$PWD/cache; graze report --compare one other");
+  EXPECT_TRUE(has(allowed.out, {": 0 became wrong, 0 no longer wrong, "})) << allowed.out;
+  expect_done("graze report other");
+  const std::string said = json("other/report.json")["answer"].dump();
+  EXPECT_TRUE(has(said, {"wrong on none of the 1,000 pairs", "for which its convention promises nothing"})) << said;
+  EXPECT_EQ(said.find("confidence"), said.npos) << said;
+}
+
 // A library is rebuilt over the old one. The old code is gone, so only the counts bound the number of changes.
 TEST_F(Compare, CodeThatIsGoneIsBoundedByCounts) {
   const auto build = [](const char* answer) {

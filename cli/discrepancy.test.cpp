@@ -318,7 +318,7 @@ TEST_F(DiscrepancyCommand, ComparesTheCodeOfACampaign) {
   expect_out(compare + "p", {"moller_1997/f32/cpu"});
 }
 
-TEST_F(DiscrepancyCommand, AVerdictThatAConventionAllowsIsNotCalledRight) {
+TEST_F(DiscrepancyCommand, AVerdictThatAConventionAllowsIsNotCalledWrong) {
   for (const int answer : {0, 1})
     std::ofstream(shell.folder / (std::to_string(answer) + ".py"))
         << "import sys\nfor line in sys.stdin: print('{\"outside\": [\"touching\", \"shared\"]}' if line == "
@@ -327,7 +327,7 @@ TEST_F(DiscrepancyCommand, AVerdictThatAConventionAllowsIsNotCalledRight) {
   expect_out(
       "graze discrepancy none/f32/cpu all/f32/cpu --subject 'none=cmd:python3 0.py' --subject 'all=cmd:python3 1.py' "
       "--strata shared_vertex --pairs 40 --out d",
-      {"is right or allowed by its convention on 0 pairs"});
+      {"alone is wrong on 0 pairs, all/f32/cpu alone on 0"});
 }
 
 TEST_F(DiscrepancyCommand, ComparesTwoResults) {

@@ -65,6 +65,15 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   EXPECT_EQ(summary["spec"]["scene"]["left_out"]["far_from_origin"], "your coordinates stay within 0 … 201.125 units");
   for (const char* id : {"near_edge_edge", "shared_edge", "mesh", "mesh_ulps", "mesh_moved"})
     EXPECT_GT(summary["strata"][id]["pairs"], 0) << id;
+  // The scene changes the pairs, so a stratum's description says that it is not of them.
+  expect_done("graze report one");
+  const Json described = json("one/report.json");
+  for (const char* rows : {"strata", "groups"}) {
+    for (const Json& row : described[rows])
+      EXPECT_EQ(row["id"].get<std::string>().starts_with("mesh"),
+                !row["describes"].get<std::string>().starts_with("without a scene, "))
+          << row;
+  }
   // A case's name draws the same pair again, from the file and from the campaign.
   const std::string text = contents(shell.folder / "one" / summary["signatures"][0]["case"].get<std::string>());
   std::smatch found;

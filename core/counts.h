@@ -21,6 +21,9 @@ struct Counts {
   constexpr std::uint64_t failed() const { return crashed + timed_out + unstable; }
   constexpr std::uint64_t wrong() const { return false_positive + false_negative + failed(); }
   constexpr std::uint64_t not_right() const { return wrong() + declined; }  // wrong or declined
+  // Not the truth, wrong or not. Lanes are ranked by it, so that neither a lane that declines nor one that a
+  // convention excuses ranks above a lane that is right.
+  constexpr std::uint64_t not_true() const { return not_right() + by_convention; }
   constexpr bool any_foreign() const { return failed() != 0 || by_convention != 0; }
 
   // The count for a verdict that differs from the truth.

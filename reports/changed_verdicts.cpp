@@ -68,9 +68,9 @@ std::string paired_headline(const Json& verdicts) {
     return fmt::format("Changed: at least {} {}, and at most {}{}", counted(totals.least, "verdict"), lanes,
                        grouped(totals.most), unknown);
   const std::uint64_t otherwise = totals.most - totals.wrong - totals.right;
-  return fmt::format("Changed: {} {}: {} became wrong, {} right{}{}", counted(totals.most, "verdict"), lanes,
+  return fmt::format("Changed: {} {}: {} became wrong, {} no longer wrong{}{}", counted(totals.most, "verdict"), lanes,
                      grouped(totals.wrong), grouped(totals.right),
-                     otherwise == 0 ? "" : fmt::format(", {} wrong in another way", grouped(otherwise)), unknown);
+                     otherwise == 0 ? "" : fmt::format(", {} changed otherwise", grouped(otherwise)), unknown);
 }
 
 void expect_possible_changes(const Json& verdicts, std::uint64_t campaign) {
@@ -108,10 +108,10 @@ std::vector<std::string> changed_sentences(const Json& compare) {
     const std::string of = fmt::format("of {}", counted(row.at("pairs").get<std::uint64_t>(), "verdict"));
     if (row.contains("broken")) {
       text += fmt::format("{} {} changed", grouped(most), of);
-      for (const auto& [way, became] : {std::pair("broken", "wrong"), {"mended", "right"}}) {
+      for (const auto& [way, now] : {std::pair("broken", "became wrong"), {"mended", "no longer wrong"}}) {
         const std::string smallest = std::string("smallest_") + way;
         text += fmt::format(
-            "; {} became {}{}", grouped(row.at(way)), became,
+            "; {} {}{}", grouped(row.at(way)), now,
             row.contains(smallest) ? fmt::format(" (smallest: {})", place_of(text_at(row, smallest.c_str()))) : "");
       }
     } else if (row.at("known") == "changed") {

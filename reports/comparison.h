@@ -24,7 +24,7 @@ inline constexpr double kLeastSignatures = 14;
 // If both campaigns ran on the same pairs, every different count is a change, and the headline is about `verdicts`.
 // This list has a row for each lane and stratum: {"lane", "stratum", "pairs", "known": "same", "changed" or "unknown",
 // "least", "most"}. "least" and "most" bound the number of changed verdicts. If the changes were counted, the row
-// also has "broken" (the number that became wrong), "mended" (the number that became right),
+// also has "broken" (the number that became wrong), "mended" (the number no longer wrong),
 // "smallest_broken" and "smallest_mended".
 //
 // Kinds, and rates over all strata, are compared only if both campaigns have the same strata in the same shares. A
@@ -48,9 +48,9 @@ std::string paired_headline(const nlohmann::ordered_json& verdicts);
 void expect_possible_changes(const nlohmann::ordered_json& verdicts, std::uint64_t campaign);
 
 // Returns a sentence for each lane with changed verdicts, then one for each lane and stratum with verdicts that changed
-// or may have changed. The latter sentences name the smallest case that became wrong, and the smallest that became
-// right. If there are more than kMostChanged such lanes and strata, the last sentence gives the number of the others.
-// Requires: "compare" of a report.
+// or may have changed. The latter sentences name the smallest case that became wrong, and the smallest that is no
+// longer wrong. If there are more than kMostChanged such lanes and strata, the last sentence gives the number of the
+// others. Requires: "compare" of a report.
 inline constexpr std::size_t kMostChanged = 12;
 std::vector<std::string> changed_sentences(const nlohmann::ordered_json& compare);
 

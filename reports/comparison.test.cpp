@@ -153,10 +153,11 @@ TEST(Comparison, TheHeadlineOnTheSamePairsIsAboutVerdicts) {
       {{"broken", 3}, {"mended", 1}, {"smallest_broken", "uniform:1:2 0 0"}, {"smallest_mended", "uniform:1:3 0 1"}});
   EXPECT_EQ(
       said(Json::array({counted})),
-      "Changed: 5 verdicts of 1 of 1 lane: 3 became wrong, 1 right, 1 wrong in another way; kinds of failure are not "
+      "Changed: 5 verdicts of 1 of 1 lane: 3 became wrong, 1 no longer wrong, 1 changed otherwise; kinds of failure "
+      "are not "
       "compared.\nlane/0: wrong on 0 of 100 pairs before, on 0 after.\nlane/0, uniform: 5 of 100 verdicts changed; 3 "
-      "became wrong (smallest: uniform:1:2); 1 became "
-      "right (smallest: uniform:1:3).");
+      "became wrong (smallest: uniform:1:2); 1 no "
+      "longer wrong (smallest: uniform:1:3).");
   const std::string bounded = said(Json::array({verdicts_row("changed", 2, 9)})),
                     unknown = said(Json::array({verdicts_row("unknown", 0, 9)}));
   EXPECT_TRUE(names(bounded.substr(0, bounded.find('\n')), {"at least 2 verdicts", "at most 9"}));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reports/counts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 
@@ -121,10 +123,11 @@ CampaignCounts counts_of(const Json& summary) {
   for (const bool of_doubles : {false, true}) {
     const bool apart = of_doubles && doubles != std::ssize(counts.strata);
     for (const strata::GroupInfo& info : strata::kGroups) {
-      GroupCounts group{std::string(info.id) + (apart ? std::string(strata::kInDoubles) : ""),
-                        (apart ? "in doubles: " : "") + std::string(info.what),
-                        {},
-                        {}};
+      GroupCounts group{
+          std::string(info.id) + (apart ? std::string(strata::kInDoubles) : ""),
+          info.group == strata::Group::mesh ? std::string(info.what) : described(info.what, apart, summary.at("spec")),
+          {},
+          {}};
       for (std::size_t s = 0; s < counts.strata.size(); ++s) {
         const std::string& id = counts.strata[s].id;
         if (strata::group_of_name(id) != info.group || counts.strata[s].pairs == 0 ||
@@ -137,6 +140,12 @@ CampaignCounts counts_of(const Json& summary) {
     }
   }
   return counts;
+}
+
+std::string described(std::string_view drawn, bool in_doubles, const Json& spec) {
+  return fmt::format("{}{}{}", in_doubles ? "in doubles: " : "", spec.contains("scene") ? "without a scene, " : "",
+                     drawn) +
+         (spec.contains("scene") ? "; here with the sizes, shapes and positions that the scene allows" : "");
 }
 
 }  // namespace graze::reports

@@ -69,4 +69,7 @@ const std::map<std::string, Bucket>& buckets_by_name();
 // Requires: the contents of summary.json.   Throws: Json::exception otherwise.
 CampaignCounts counts_of(const nlohmann::ordered_json& summary);
 
+// The description of drawn pairs, for a campaign with this spec. A scene changes the pairs of every stratum.
+std::string described(std::string_view drawn, bool in_doubles, const nlohmann::ordered_json& spec);
+
 }  // namespace graze::reports

@@ -28,11 +28,10 @@ LaneIndices those(const LaneIndices& among, const Holds& holds) {
   return places;
 }
 
-// Pairs on which the lane's verdict is wrong or declined.
-std::uint64_t not_right(const CampaignCounts& counts, std::size_t lane) { return counts.total.lanes[lane].not_right(); }
+std::uint64_t not_true(const CampaignCounts& counts, std::size_t lane) { return counts.total.lanes[lane].not_true(); }
 
-Share share_not_right(const CampaignCounts& counts, std::size_t lane) {
-  return share_of(not_right(counts, lane), counts.total.pairs);
+Share share_not_true(const CampaignCounts& counts, std::size_t lane) {
+  return share_of(not_true(counts, lane), counts.total.pairs);
 }
 
 // The strata on which costs are compared: the general pairs if there are any, because exact decisions are known to be
@@ -138,12 +137,15 @@ std::string at_cost(const CampaignCounts& counts, const Costs* costs, const Lane
                      cost_words(*costs->of(*lane, ground.strata)), ground.pair);
 }
 
-// "; bound declines 1,200 pairs", for each lane that declines pairs.
-std::string declining(const CampaignCounts& counts, const LaneIndices& lanes) {
+// "; bound declines 1,200 pairs", for each lane with verdicts that are neither right nor wrong.
+std::string not_counted(const CampaignCounts& counts, const LaneIndices& lanes) {
   std::string text;
   for (const std::size_t l : lanes) {
-    if (const std::uint64_t declined = counts.total.lanes[l].declined; declined > 0)
-      text += fmt::format("; {} declines {} pairs", counts.lanes[l].id, grouped(declined));
+    const analysis::LaneCounts& of = counts.total.lanes[l];
+    if (of.declined > 0) text += fmt::format("; {} declines {} pairs", counts.lanes[l].id, grouped(of.declined));
+    if (of.by_convention > 0)
+      text +=
+          fmt::format("; the convention of {} allows {} other verdicts", counts.lanes[l].id, grouped(of.by_convention));
   }
   return text;
 }
@@ -278,7 +280,7 @@ std::string dangerous(const CampaignCounts& counts, const LaneIndices& lanes) {
     double wrong = 0;
     for (const std::size_t l : lanes) wrong += static_cast<double>(stratum.wrong(l));
     const std::size_t best = *std::min_element(lanes.begin(), lanes.end(), [&](std::size_t l, std::size_t r) {
-      return stratum.lanes[l].not_right() < stratum.lanes[r].not_right();
+      return stratum.lanes[l].not_true() < stratum.lanes[r].not_true();
     });
     const bool all_count = std::all_of(lanes.begin(), lanes.end(), [&](std::size_t l) {
       return stratum.lanes[l].declined + stratum.lanes[l].by_convention == 0;
@@ -290,12 +292,15 @@ std::string dangerous(const CampaignCounts& counts, const LaneIndices& lanes) {
   const char* whose = lanes.size() < counts.lanes.size() ? "the published lanes' verdicts" : "all verdicts";
   const auto described = [&](const Danger& d) {
     const double best = share_of(d.stratum->wrong(d.best), d.stratum->pairs).share;
-    const std::uint64_t declined = d.stratum->lanes[d.best].declined;
-    return fmt::format("{} ({} of {} wrong{})", d.stratum->id, rate_words(d.share), whose,
-                       lanes.size() == 1 ? ""
-                                         : fmt::format(", {} of those of its best lane, {}{}",
-                                                       best == 0 ? "none" : rate_words(best), counts.lanes[d.best].id,
-                                                       declined == 0 ? "" : ", which declines " + grouped(declined)));
+    const analysis::LaneCounts& of = d.stratum->lanes[d.best];
+    const std::string declined = of.declined == 0 ? "" : ", which declines " + grouped(of.declined),
+                      by_convention =
+                          of.by_convention == 0 ? "" : ", whose convention allows " + grouped(of.by_convention);
+    return fmt::format(
+        "{} ({} of {} wrong{})", d.stratum->id, rate_words(d.share), whose,
+        lanes.size() == 1 ? ""
+                          : fmt::format(", {} of those of its best lane, {}{}{}", best == 0 ? "none" : rate_words(best),
+                                        counts.lanes[d.best].id, declined, by_convention));
   };
   if (all.front().share == 0) {
     return all.size() == 1 ? fmt::format("The only stratum, {}, shows no wrong verdict.", all[0].stratum->id)
@@ -388,7 +393,7 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
   const Ground ground = ground_of(counts);
   const std::optional<Cost> own = cost_of(costs, worst, ground.strata);
   const std::size_t least = *std::min_element(
-      lanes.begin(), lanes.end(), [&](auto l, auto r) { return not_right(counts, l) < not_right(counts, r); });
+      lanes.begin(), lanes.end(), [&](auto l, auto r) { return not_true(counts, l) < not_true(counts, r); });
   const std::optional<Cost> better = cost_of(costs, least, ground.strata);
   if (own && better && is_cheaper(*better, *own)) {
     text += fmt::format(". {} is both less often wrong and cheaper, {} {} against {}", counts.lanes[least].id,
@@ -397,20 +402,22 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
   return {text + "."};
 }
 
-// If some lanes decline pairs, the sentence names the lane that is right most often, which is never one that declines
-// everything.
+// If some lanes decline pairs, or differ by their convention, the sentence names the lane that is right most often,
+// which is never one that declines everything.
 Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs) {
   const LaneIndices lanes = published(counts);
   const StratumCounts& total = counts.total;
-  const auto less = [&](std::size_t l, std::size_t r) { return not_right(counts, l) < not_right(counts, r); };
+  const auto less = [&](std::size_t l, std::size_t r) { return not_true(counts, l) < not_true(counts, r); };
   const std::size_t least = *std::min_element(lanes.begin(), lanes.end(), less);
-  // The smallest number of pairs that any of these lanes decides.
+  // The smallest number of pairs that any of these lanes decides; 0 if a convention excuses some, because nothing
+  // counts the pairs that it does not cover.
   const auto decided = [&](const LaneIndices& of) {
     std::uint64_t pairs = total.pairs;
-    for (const std::size_t l : of) pairs = std::min(pairs, total.pairs - total.lanes[l].declined);
+    for (const std::size_t l : of)
+      pairs = std::min(pairs, total.lanes[l].by_convention > 0 ? 0 : total.pairs - total.lanes[l].declined);
     return pairs;
   };
-  const bool any_declines = decided(lanes) < total.pairs;
+  const bool any_not_counted = decided(lanes) < total.pairs;
   const auto bound = [](std::uint64_t pairs) { return rate_words(bound_of_none(pairs), Bound::upper); };
   if (std::all_of(lanes.begin(), lanes.end(), [&](std::size_t l) { return total.wrong(l) == 0; })) {
     const std::uint64_t pairs = decided(lanes);
@@ -421,15 +428,15 @@ Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs) {
                         pairs == 0 ? ""
                                    : fmt::format(", so with 95 % confidence {} on fewer than {} of such pairs",
                                                  lanes.size() == 1 ? "it errs" : "each errs", bound(pairs)),
-                        declining(counts, lanes))};
+                        not_counted(counts, lanes))};
   }
-  const char* which = any_declines ? "most often right" : "least wrong";
+  const char* which = any_not_counted ? "most often right" : "least wrong";
   const std::optional<std::size_t> next = first_of_others(counts, lanes, least, less);
-  if (next && !share_not_right(counts, least).apart(share_not_right(counts, *next)))
-    return {not_settled(counts, which, least, *next, share_not_right,
-                        any_declines ? "wrong or without a verdict" : "wrong")};
+  if (next && !share_not_true(counts, least).apart(share_not_true(counts, *next)))
+    return {not_settled(counts, which, least, *next, share_not_true,
+                        any_not_counted ? "without a correct verdict" : "wrong")};
   const LaneIndices best = those(lanes, [&](std::size_t l) {
-    return not_right(counts, l) == not_right(counts, least) && total.wrong(l) == total.wrong(least);
+    return not_true(counts, l) == not_true(counts, least) && total.wrong(l) == total.wrong(least);
   });
   const std::string found =
       total.wrong(least) > 0
@@ -440,10 +447,10 @@ Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs) {
   const std::string cost = at_cost(counts, costs, best);
   if (lanes.size() == 1)
     return {fmt::format("The only published lane, {}, is wrong on {}{}{}.", counts.lanes[least].id, found, cost,
-                        declining(counts, lanes))};
+                        not_counted(counts, lanes))};
   return {fmt::format("Of the {} published lanes the {} {} {}: {}on {}{}{}.", lanes.size(), which,
-                      best.size() == 1 ? "is" : "are", ids(counts, best), any_declines ? "wrong " : "", found, cost,
-                      declining(counts, best))};
+                      best.size() == 1 ? "is" : "are", ids(counts, best), any_not_counted ? "wrong " : "", found, cost,
+                      not_counted(counts, best))};
 }
 
 std::vector<std::string> answer(const CampaignCounts& counts, const Costs* costs, const nlohmann::ordered_json& kinds) {

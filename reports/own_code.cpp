@@ -64,9 +64,9 @@ int rank_of(const Json& kind, const std::string& lane, std::uint64_t all) {
 }
 
 // Describes from which margin upwards the lane is wrong on none of these pairs. Declined pairs are not wrong, so
-// nothing is said of a lane that declines all.
+// nothing is said of a lane that declines all, nor of one that its convention excuses.
 std::string trusted_from(const StratumCounts& pairs, std::size_t lane, const std::string& which) {
-  if (pairs.lanes[lane].declined == pairs.pairs) return "";
+  if (pairs.lanes[lane].declined == pairs.pairs || pairs.lanes[lane].by_convention > 0) return "";
   std::vector<std::string> right, wrong;
   for (const auto& [side, how] : {std::pair(1, "apart"), {-1, "deep"}}) {
     const Threshold from = threshold(pairs, lane, side);
@@ -116,6 +116,10 @@ std::string wrong_words(const CampaignCounts& counts, std::size_t lane) {
   if (found.wrong() == 0) {
     const std::uint64_t decided = counts.total.pairs - found.declined;
     if (decided == 0) return fmt::format("{} decides none of {} pairs.{}", id, pairs, not_counted(found));
+    // The pairs that its convention covers are not counted, so nothing can be said of their rate.
+    if (found.by_convention > 0)
+      return fmt::format("{} is wrong on none of the {} that it decides.{}", id, counted(decided, "pair"),
+                         not_counted(found));
     return fmt::format(
         "{} is wrong on none of the {} that it decides: with 95 % confidence it errs on fewer than {} of such pairs.{}",
         id, counted(decided, "pair"), rate_words(bound_of_none(decided), Bound::upper), not_counted(found));

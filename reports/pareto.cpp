@@ -79,13 +79,14 @@ std::string errors_in_words(const PolicyErrors& e) {
       fmt::format("{} false negatives, {} false positives", grouped(e.false_negative), grouped(e.false_positive));
   if (e.failed() > 0) words += fmt::format(", {} crashed, timed out or unstable", grouped(e.failed()));
   if (e.declined > 0) words += fmt::format(", {} declined", grouped(e.declined));
+  if (e.by_convention > 0) words += fmt::format(", {} allowed by its convention", grouped(e.by_convention));
   return words + fmt::format(" on {} pairs", grouped(e.pairs));
 }
 
 Json offer_json(const Offer& offer) {
   return {{"lane", offer.lane},
           {"errors", errors_json(offer.errors)},
-          {"bound", analysis::upper_bound(offer.errors.not_right(), offer.errors.pairs)},
+          {"bound", analysis::upper_bound(offer.errors.not_true(), offer.errors.pairs)},
           {"failure", offer.failure ? Json(fuzz::pair_text(*offer.failure)) : Json()}};
 }
 
@@ -111,18 +112,22 @@ std::string pareto_table(const Pareto& pareto, const Screen& screen) {
                                  {"false positives"},
                                  {"declined"},
                                  {"", Align::left}};
-  const bool any_failed =
-      std::any_of(pareto.offers.begin(), pareto.offers.end(), [](const Offer& o) { return o.errors.failed() > 0; });
+  const auto any = [&](auto count) {
+    return std::any_of(pareto.offers.begin(), pareto.offers.end(), [&](const Offer& o) { return count(o.errors) > 0; });
+  };
+  const bool any_failed = any([](const PolicyErrors& e) { return e.failed(); });
+  const bool any_by_convention = any([](const PolicyErrors& e) { return e.by_convention; });
   const std::vector<Column> more = pareto.on_device ? std::vector<Column>{{"registers"}, {"local bytes"}, {"threads"}}
                                                     : std::vector<Column>{{"one a call", Align::point}};
   columns.insert(columns.begin() + 3, more.begin(), more.end());
   if (any_failed) columns.insert(columns.end() - 2, {"crashed, timed out or unstable"});
+  if (any_by_convention) columns.insert(columns.end() - 1, {"allowed by its convention"});
   TextTable table(columns);
   for (const Offer& offer : cheapest_first(pareto.offers)) {
     const PolicyErrors& e = offer.errors;
     const std::string words = !offer.near       ? "not timed"
                               : offer.dominated ? "dominated"
-                              : e.share_not_right() == 0
+                              : e.share_not_true() == 0
                                   ? "none: under " + rounded_up(analysis::upper_bound(0, e.pairs), 1)
                                   : "front";
     std::vector<Cell> cells = {{offer.lane},
@@ -134,6 +139,7 @@ std::string pareto_table(const Pareto& pareto, const Screen& screen) {
                                {words}};
     if (!pareto.on_device) cells.insert(cells.begin() + 3, {nanoseconds(offer.alone)});
     if (any_failed) cells.insert(cells.end() - 2, {grouped(e.failed()), e.failed() > 0});
+    if (any_by_convention) cells.insert(cells.end() - 1, {grouped(e.by_convention)});
     if (pareto.on_device) {
       using Needs = cuda::KernelNeeds;
       const auto cell = [&](int Needs::*need) {
@@ -176,7 +182,15 @@ std::vector<std::string> pareto_sentences(const Pareto& pareto) {
 }
 
 std::string extremes_text(const Pareto& pareto, const Screen& screen) {
-  std::string text = wrapped(kAsRightMeans, screen.columns);
+  const bool any_not_counted = std::any_of(pareto.curves.begin(), pareto.curves.end(), [](const ExtremeCurve& curve) {
+    return std::any_of(curve.points.begin(), curve.points.end(),
+                       [](const auto& point) { return point.second.not_true() > point.second.wrong(); });
+  });
+  std::string text = wrapped(
+      std::string(kAsRightMeans) + (any_not_counted ? " Here a verdict that is declined, or that a convention allows, "
+                                                      "counts as an error."
+                                                    : ""),
+      screen.columns);
   for (const Offer& offer : pareto.offers) {
     text += offer.lane + '\n';
     for (const ExtremeCurve& curve : pareto.curves) {
@@ -249,12 +263,12 @@ std::string pareto_figure(const Pareto& pareto) {
                   fmt::format("nanoseconds a pair, pairs {}", pareto.on_device ? "on the device" : "in cache"));
   std::string front;
   for (const Offer& offer : cheapest_first(timed(pareto.offers))) {
-    const double x = x_of(offer.near->middle), y = kRates.y(offer.errors.share_not_right());
+    const double x = x_of(offer.near->middle), y = kRates.y(offer.errors.share_not_true());
     const char* colour = offer.dominated ? "#999" : "#d55e00";
     svg += fmt::format(
         "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"><title>{}: {} ns, {} of {} "
         "pairs</title></circle>\n",
-        x, y, offer.dominated ? 3 : 5, colour, offer.lane, nanoseconds(offer.near), grouped(offer.errors.not_right()),
+        x, y, offer.dominated ? 3 : 5, colour, offer.lane, nanoseconds(offer.near), grouped(offer.errors.not_true()),
         grouped(offer.errors.pairs));
     if (offer.dominated) continue;
     front += fmt::format("{:.1f},{:.1f} ", x, y);
@@ -278,7 +292,7 @@ std::string extreme_figure(const std::vector<ExtremeCurve>& curves, Extreme extr
     if (curve.extreme != extreme) continue;
     std::string points;
     for (const auto& [k, errors] : curve.points)
-      points += fmt::format("{:.1f},{:.1f} ", x_of(k), kRates.y(errors.share_not_right()));
+      points += fmt::format("{:.1f},{:.1f} ", x_of(k), kRates.y(errors.share_not_true()));
     const char* colour = kSvgColours[row % kSvgColours.size()];
     const char* dashes = row < kSvgColours.size()       ? ""
                          : row < 2 * kSvgColours.size() ? " stroke-dasharray=\"6 3\""

@@ -315,7 +315,7 @@ constexpr const char* kDefinitions = R"(<h2>Definitions</h2>
 the truth. A lane is an algorithm in one precision on one target. cpu and cuda-nofma round every operation; in cpu-fma and
 cuda-fma the compiler may fuse products into additions. The margin of a disjoint pair is its distance. The margin of an intersecting
 pair is minus the length of the smallest translation that separates it, or 0 if an arbitrarily small one does. Its unit is the
-float32 ulp of the largest coordinate. Intervals are Wilson's, with 95 % confidence. A signature is a way to fail: contact,
+ulp of the largest coordinate, in the coordinates' type. Intervals are Wilson's, with 95 % confidence. A signature is a way to fail: contact,
 dimensions of both hulls, skew or coplanar, margin, algorithm, and a mark for each of the algorithm's lanes: + false positive,
 - false negative, . right, _ not run.</p>
 )";

@@ -98,8 +98,7 @@ void expect_possible_rates(const Json& report) {
                row["false_negative"].at("of") == of.intersects &&
                row["false_positive"].at("of") == of.pairs - of.intersects &&
                (differs.is_null() || differs.at("of") == of.pairs) &&
-               row.value("stored", std::uint64_t{0}) <= counts.wrong() &&
-               counts.not_right() + counts.by_convention <= of.pairs,
+               row.value("stored", std::uint64_t{0}) <= counts.wrong() && counts.not_true() <= of.pairs,
            fmt::format("rates that add up to {} pairs", of.pairs), row);
     auto& [together, sum] = of_lanes[row.at("lane").dump()];
     (row.at("stratum").is_null() ? together : sum) += counts;
@@ -397,7 +396,7 @@ void expect_domination(const Json& row, const Json& lanes) {
   const auto cost = [](const Json& lane, const char* quartile) -> double {
     return lane.at(lane.contains("resident") ? "resident" : "in_cache").at(quartile);
   };
-  const auto errors = [](const Json& lane) { return fuzz::counts_of(lane.at("errors")).not_right(); };
+  const auto errors = [](const Json& lane) { return fuzz::counts_of(lane.at("errors")).not_true(); };
   const bool dominated = row.at("dominated");
   const auto is_cheaper = [&](const Json& other) {
     const bool same_errors = errors(other) == errors(row);
@@ -508,7 +507,7 @@ void expect_possible_pareto(const Json& pareto) {
     expect(ids.insert(lane).second, "each lane once", row);
     const Json& errors = row.at("errors");
     expect(errors.at("pairs") == pairs, fmt::format("errors on {} pairs", pairs), row);
-    expect_upper_bound(row.at("bound"), fuzz::counts_of(errors).not_right(), pairs);
+    expect_upper_bound(row.at("bound"), fuzz::counts_of(errors).not_true(), pairs);
   };
   for (const Json& row : lanes) {
     expect_row(row);
@@ -529,7 +528,7 @@ void expect_possible_pareto(const Json& pareto) {
       expect((points.empty() || point.at("log2") > points.back().exponent) && point.at("pairs") <= pairs &&
                  point["pairs"] == row["points"][0]["pairs"],
              fmt::format("one point for each exponent, each with the same number of pairs, at most {}", pairs), point);
-      points.push_back({point["log2"], fuzz::counts_of(point).not_right(), point["pairs"]});
+      points.push_back({point["log2"], fuzz::counts_of(point).not_true(), point["pairs"]});
     }
     expect(row.at("says") == right_words(points, 0), "the words that follow from its points", row["says"]);
   }

@@ -63,7 +63,7 @@ Json run_of(const std::filesystem::path& directory, const Json& summary, const C
 // Describes a stratum's pairs. Different meshes have different descriptions, as do hunts from different strata.
 std::string description_of(const std::string& stratum, const Json& spec) {
   if (const strata::StratumInfo* row = strata::stratum_info(stratum))
-    return (strata::stratum_in_doubles(stratum) ? "in doubles: " : "") + std::string(row->what);
+    return described(row->what, strata::stratum_in_doubles(stratum).has_value(), spec);
   if (spec.contains("hunt")) {
     const std::vector<std::string> from = spec["hunt"].at("strata");
     const bool in_doubles = strata::stratum_in_doubles(stratum).has_value();

@@ -63,8 +63,12 @@ std::string errors(const PolicyErrors& e) {
                        count == 0 ? "" : fmt::format(" ({})", rate_words(count, e.pairs)));
   };
   const std::string failed = e.failed() == 0 ? "" : ", " + part(e.failed(), "crashed, timed out or unstable");
-  return fmt::format("{}{} and {} of {} pairs", part(e.false_negative, "false negatives"), failed,
-                     part(e.false_positive, "false positives"), grouped(e.pairs));
+  const auto beside = [](std::uint64_t count, const char* what) {
+    return count == 0 ? "" : fmt::format(", and {} {}", grouped(count), what);
+  };
+  return fmt::format("{}{} and {} of {} pairs{}{}", part(e.false_negative, "false negatives"), failed,
+                     part(e.false_positive, "false positives"), grouped(e.pairs), beside(e.declined, "declined"),
+                     beside(e.by_convention, "allowed by its convention"));
 }
 
 // Names the errors that double from one scale to another: all errors, or only the forbidden kind.

@@ -25,8 +25,8 @@ constexpr const char* kOf[] = {"of_first", "of_second"};
 Json row_of(const analysis::VerdictsApart& found) {
   Json row = {{"pairs", found.pairs},
               {"differs", found.differs},
-              {"only_first_right", found.broken},
-              {"only_second_right", found.mended}};
+              {"only_second_wrong", found.broken},
+              {"only_first_wrong", found.mended}};
   for (int lane = 0; lane < 2; ++lane) row[kOf[lane]] = fuzz::counts_json(found.of[lane], true);
   return row;
 }
@@ -151,13 +151,9 @@ std::string verdicts_sentence(const Json& of) {
                   text_at(of, "first"), text_at(of, "second"), rate(number_at(total, "differs")), grouped(pairs),
                   rate(wrong(total, 0)), rate(wrong(total, 1)));
   const auto count = [&](const char* key) { return grouped(number_at(total, key)); };
-  const bool by_convention = std::any_of(std::begin(kOf), std::end(kOf), [&](const char* lane) {
-    return fuzz::counts_of(total.at(lane)).by_convention > 0;
-  });
   if (number_at(total, "differs") > 0)
-    verdicts += fmt::format("Where they differ, {} alone is right{} on {} pairs, {} alone on {}. ",
-                            text_at(of, "first"), by_convention ? " or allowed by its convention" : "",
-                            count("only_first_right"), text_at(of, "second"), count("only_second_right"));
+    verdicts += fmt::format("Where they differ, {} alone is wrong on {} pairs, {} alone on {}. ", text_at(of, "first"),
+                            count("only_first_wrong"), text_at(of, "second"), count("only_second_wrong"));
   if (text_at(of, "first").ends_with("/cuda-nofma") && text_at(of, "second").ends_with("/cuda-fma"))
     verdicts += "Built with -fmad=false, your code gives the verdicts of cuda-nofma. ";
   if (of.contains("operands")) return verdicts + operands_sentence(of.at("operands"));
@@ -240,7 +236,7 @@ std::string verdicts_csv(const Json& of) {
     };
     add("", "pairs", counts.at("pairs"));
     add("", "verdict", counts.at("differs"));
-    for (const char* key : {"only_first_right", "only_second_right"}) add("", key, counts.at(key));
+    for (const char* key : {"only_second_wrong", "only_first_wrong"}) add("", key, counts.at(key));
     for (const char* lane : kOf) {
       for (const auto& [name, count] : counts.at(lane).items()) add(lane, name, count);
     }
@@ -261,19 +257,19 @@ void expect_possible_verdicts(const Json& of) {
     analysis::VerdictsApart counts;
     counts.pairs = number_at(row, "pairs");
     counts.differs = number_at(row, "differs");
-    counts.broken = number_at(row, "only_first_right");
-    counts.mended = number_at(row, "only_second_right");
+    counts.broken = number_at(row, "only_second_wrong");
+    counts.mended = number_at(row, "only_first_wrong");
     std::uint64_t not_true = 0;
     for (int lane = 0; lane < 2; ++lane) {
       counts.of[lane] = fuzz::counts_of(row.at(kOf[lane]));
-      const std::uint64_t others = counts.of[lane].not_right() + counts.of[lane].by_convention;
+      const std::uint64_t others = counts.of[lane].not_true();
       expect(others <= counts.pairs, what + ": more wrong verdicts than pairs");
       not_true += others;
     }
     expect(counts.differs <= counts.pairs && counts.differs <= not_true, what + ": more differences than errors");
     expect(counts.broken <= counts.differs && counts.mended <= counts.differs - counts.broken &&
-               counts.broken <= counts.of[1].not_right() && counts.mended <= counts.of[0].not_right(),
-           what + ": more correct verdicts than differences");
+               counts.broken <= counts.of[1].wrong() && counts.mended <= counts.of[0].wrong(),
+           what + ": more wrong verdicts of one lane alone than it has");
     return counts;
   };
   for (const auto& [stratum, row] : of.at("strata").items()) {

@@ -423,8 +423,8 @@ Built build_source(const fs::path& source, const std::string& function, const Re
   }
   throw std::runtime_error(cannot(
       "compile", name,
-      fmt::format("its code changed during each of {} builds; run the command again when nothing writes the files "
-                  "that it includes",
+      fmt::format("the source, a file that it includes or one that --flags names changed during each of {} builds; "
+                  "run the command again when nothing writes them, without flags that write files",
                   kMostBuilds)));
 }
 

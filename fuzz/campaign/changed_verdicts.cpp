@@ -13,14 +13,13 @@ std::uint64_t gap(std::uint64_t l, std::uint64_t r) { return l < r ? r - l : l -
 // Each changed verdict moves its pair from one count to another, or between a count and the right verdicts. A pair that
 // a convention excuses may move although its verdict is unchanged, so the lower bound excludes such pairs.
 void add_bounds(const Counts& before, const Counts& after, std::uint64_t pairs, ChangedVerdicts& to) {
-  const auto not_right = [](const Counts& counts) { return counts.not_right() + counts.by_convention; };
-  std::uint64_t moved = gap(not_right(before), not_right(after));
+  std::uint64_t moved = gap(before.not_true(), after.not_true());
   for (const auto field : {&Counts::false_positive, &Counts::false_negative, &Counts::declined, &Counts::crashed,
                            &Counts::timed_out, &Counts::unstable})
     moved += gap(before.*field, after.*field);
   const std::uint64_t excused = before.by_convention + after.by_convention, least = (moved + 1) / 2;
   to.least += least - std::min(least, excused);
-  to.most += std::min(pairs, not_right(before) + not_right(after));
+  to.most += std::min(pairs, before.not_true() + after.not_true());
 }
 
 ChangedVerdicts compared(const StoredCounts& before, std::size_t lane_before, const StoredCounts& after,

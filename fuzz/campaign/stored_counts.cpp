@@ -89,7 +89,7 @@ std::uint64_t read_tally(const Json& rows, std::uint64_t pairs, analysis::Tally&
                                          whole(lane[3], here, what), more(5), more(6), more(7), more(8)},
                                         whole(lane[4], here, what),
                                         more(9)};
-      expect(counts.not_right() + counts.by_convention <= here && (lane.size() != 9 || counts.any_foreign()) &&
+      expect(counts.not_true() <= here && (lane.size() != 9 || counts.any_foreign()) &&
                  (lane.size() == 10) == (counts.stored > 0) &&
                  counts.stored <= counts.false_positive + counts.false_negative,
              what);

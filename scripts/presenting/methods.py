@@ -52,8 +52,9 @@ def price(r):
         "price",
         f"Exact costs less than float32 on {count(cheaper)} of {count(len(STRATA))} strata, and at most "
         f"{times(ratio[last], math.ceil)} as much on the others",
-        f"The exact decision gives the same verdict as CGAL on all {count(of(against))} pairs of all strata (so with "
-        f"95 % confidence they differ on fewer than {at_most_one_in(of(against))}). The figure compares its time with "
+        f"The exact decision gives the same verdict as CGAL on all {count(of(against))} pairs of nineteen strata (so "
+        f"with 95 % confidence they differ on fewer than {at_most_one_in(of(against))}; `thesis_special` and `nested` "
+        "were added later). The figure compares its time with "
         "that of `separating_axes` in float32, the published test that also decides several pairs at once in the "
         f"processor's vectors. On `uniform`, exact takes {count(exact['uniform'])} ns a pair and "
         f"`separating_axes` {count(axes['uniform'])} ns. Exact is cheaper on random pairs, on pairs that nearly "

@@ -11,7 +11,9 @@ import { go_to } from './state';
 
 type Offer = Pareto['lanes'][number];
 
-const without_answer = (e: Errors) => e.false_negative + e.false_positive + e.declined;
+const failed = (e: Errors) => (e.crashed ?? 0) + (e.timed_out ?? 0) + (e.unstable ?? 0);
+const without_answer = (e: Errors) =>
+  e.false_negative + e.false_positive + failed(e) + e.declined + (e.by_convention ?? 0);
 const share = (e: Errors) => (e.pairs ? without_answer(e) / e.pairs : 0);
 const cost = (offer: Offer) => (offer.resident ?? offer.in_cache)!;
 const far = (offer: Offer) => (offer.with_copies ?? offer.from_memory)!;
@@ -108,7 +110,13 @@ export function pareto_section(report: Report, pareto: Pareto) {
       },
       counts('False negatives', (o) => o.errors.false_negative),
       counts('False positives', (o) => o.errors.false_positive),
+      ...(pareto.lanes.some((o) => failed(o.errors))
+        ? [counts('Crashed, timed out or unstable', (o: Offer) => failed(o.errors))]
+        : []),
       counts('Declined', (o) => o.errors.declined),
+      ...(pareto.lanes.some((o) => o.errors.by_convention)
+        ? [counts('Allowed by its convention', (o: Offer) => o.errors.by_convention ?? 0)]
+        : []),
       ...(on_device
         ? [
             counts('Registers', (o: Offer) => o.registers),

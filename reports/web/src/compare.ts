@@ -23,9 +23,9 @@ function verdicts_table(verdicts: Verdicts[]) {
       { label: 'Stratum', cell: (v) => v.stratum, order: (v) => v.stratum },
       { label: 'Changed', numeric: true, cell: range, order: (v) => v.most },
       { label: 'Became wrong', numeric: true, cell: (v) => counted(v.broken), order: (v) => v.broken ?? -1 },
-      { label: 'Became right', numeric: true, cell: (v) => counted(v.mended), order: (v) => v.mended ?? -1 },
+      { label: 'No longer wrong', numeric: true, cell: (v) => counted(v.mended), order: (v) => v.mended ?? -1 },
       {
-        label: 'Smallest case that became wrong or right',
+        label: 'Smallest case that became wrong or no longer is',
         cell: (v) => h('code', {}, v.smallest_broken ?? v.smallest_mended ?? ''),
         order: (v) => v.smallest_broken ?? v.smallest_mended ?? '',
       },

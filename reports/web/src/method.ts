@@ -3,7 +3,10 @@
 import { h, marked, paragraph, section } from './dom';
 
 const kTerms = [
-  ['Pair', 'Two triangles, given by 18 float32 numbers. The stored bits are the input: nothing rounds them again.'],
+  [
+    'Pair',
+    'Two triangles, given by 18 float32 numbers, or by 18 doubles in strata whose names end with `/f64`. The stored bits are the input: nothing rounds them again, except that a lane in float32 decides a pair of doubles as float32 stores it.',
+  ],
   ['Triangle', 'The closed convex hull of its three points, so a degenerate triangle is a segment or a point.'],
   [
     'Intersects',
@@ -23,7 +26,7 @@ const kTerms = [
   ],
   [
     'Truth',
-    'CGAL’s exact kernel decides; an independent decision on integers of any size (GMP) confirms every disagreement that is kept. If the two ever differ, the campaign stops.',
+    'CGAL’s exact kernel decides; an independent decision on integers of any size (GMP) confirms every disagreement that is kept. With `--judge exact` or `--engine gpu`, Graze’s own exact decision comes first; CGAL and GMP then decide every disagreement that is kept, and a sample of the other pairs. If two of them ever differ, the campaign stops.',
   ],
   [
     'False positive, false negative',
@@ -35,7 +38,7 @@ const kTerms = [
   ],
   [
     'Ulp',
-    'The step between neighbouring float32 numbers at the pair’s largest coordinate. Margins are given in ulps, so that the pair’s size does not matter.',
+    'The step between neighbouring numbers of the coordinates’ type, float32 or double, at the pair’s largest coordinate. Margins are given in ulps, so that the pair’s size does not matter.',
   ],
   [
     'Interval',

@@ -40,6 +40,10 @@ export interface Errors {
   false_negative: number;
   false_positive: number;
   declined: number;
+  crashed?: number; // these four only for your own code
+  timed_out?: number;
+  unstable?: number;
+  by_convention?: number; // not the truth, but allowed by the code's convention
 }
 // Errors under one policy; fixed and broken are relative to the lane without a policy.
 export interface PolicyErrors extends Errors {
@@ -291,7 +295,7 @@ export interface ChangedVerdicts {
   least: number; // least and most: bounds on the number of changed verdicts
   most: number;
   broken?: number; // became wrong; only if both versions of the code decided the pairs again
-  mended?: number; // became right
+  mended?: number; // no longer wrong
   smallest_broken?: string; // "STRATUM:SEED:INDEX 18 numbers"
   smallest_mended?: string;
 }

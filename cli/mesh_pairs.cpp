@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
@@ -15,6 +14,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "analysis/over_threads.h"
 #include "core/exact_blocks/decide.h"
 #include "core/lanes/lanes.h"
 #include "core/relation_of.h"
@@ -182,8 +182,7 @@ FoundPairs find_pairs(const TwoMeshes& meshes, const Decider& decider, const Kep
   tbb::enumerable_thread_specific<Block> blocks;
   std::mutex telling;
   std::size_t done = 0;
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(decider.threads));
+  const tbb::global_control limit = analysis::thread_limit(decider.threads);
   tbb::parallel_for(std::size_t{0}, slabs.size(), [&](std::size_t slab) {
     Block& block = blocks.local();
     Candidates& candidates = block.candidates;

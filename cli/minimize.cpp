@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `graze minimize`: reduces a case, or all cases of a campaign, to pairs that are easy to read.
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <unistd.h>
@@ -15,6 +14,7 @@
 #include <set>
 #include <sstream>
 
+#include "analysis/over_threads.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
@@ -265,7 +265,7 @@ int minimize_directory(MinimizeOptions options) {
   fuzz::expect_file(directory / "failures.json");
   if (whole) fuzz::expect_own(directory / "failures.json", Json{{"summary", ""}, {"cases", ""}}.dump(1));
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  const tbb::global_control limit = analysis::thread_limit(threads);
   const std::atomic<bool>& interrupted = catch_interrupts();
   Progress progress("signatures", rows.size(), isatty(STDERR_FILENO), error_screen());
   fuzz::CostEstimate work({rows.size()});

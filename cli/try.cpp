@@ -3,7 +3,6 @@
 // failures that matter most, and prints one screen. The output folder is a campaign directory, which all other verbs
 // accept.
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -15,6 +14,7 @@
 #include <mutex>
 #include <set>
 
+#include "analysis/over_threads.h"
 #include "cli/commands.h"
 #include "cli/emit.h"
 #include "cli/fuzz.h"
@@ -319,7 +319,7 @@ int try_source(const TryOptions& options) {
     fuzz::write_whole(campaign.directory / "margins.svg", reports::margin_figure(outcome.summary));
     const bool is_program = answer.code.is_program;
     const int threads = (is_program ? kThreadsForPrograms : 1) * tbb::info::default_concurrency();
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    const tbb::global_control limit = analysis::thread_limit(threads);
     tbb::task_arena(threads).execute([&] {
       answer.kinds = minimised_kinds(under_test, campaign.directory, outcome.summary, lane,
                                      is_program ? kMostOfProgram : kMostOfKind);

@@ -381,6 +381,7 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
   std::string text = fmt::format("Avoid {}: wrong on {}, {} false positives and {} false negatives",
                                  ids(counts, equals), with_interval(wrong_share(counts, worst), " pairs"),
                                  grouped(found.false_positive), grouped(found.false_negative));
+  if (found.failed() > 0) text += fmt::format(", {} without an answer", grouped(found.failed()));
   std::uint64_t general = 0, wrong_general = 0;
   for (const char* id : {"general", "general/f64"}) {
     const GroupCounts* group = counts.group(id);

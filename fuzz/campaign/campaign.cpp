@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <sys/utsname.h>
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <fstream>
 #include <optional>
 
+#include "analysis/over_threads.h"
 #include "build_info.h"
 #include "core/error.h"
 #include "core/stop.h"
@@ -132,7 +132,7 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
             const std::function<void(const Progress&)>& report) {
   const auto start = std::chrono::steady_clock::now();
   const int threads = campaign.threads > 0 ? campaign.threads : tbb::info::default_concurrency();
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  const tbb::global_control limit = analysis::thread_limit(threads);
 
   Store store(store_spec(campaign));
   expect_usable_records(campaign.directory);

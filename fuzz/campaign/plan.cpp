@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuzz/campaign/plan.h"
 
-#include <tbb/global_control.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
+#include "analysis/over_threads.h"
 #include "analysis/sweep.h"
 #include "fuzz/campaign/cpu_engine.h"
 #include "fuzz/campaign/gpu_engine.h"
@@ -41,7 +40,7 @@ double summary_bytes(const StoreSpec& spec, const StoredCounts& counts) {
 }  // namespace
 
 Sample measure(const Campaign& campaign) {
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+  const tbb::global_control limit = analysis::thread_limit(1);
   Confirmation confirmation(campaign);
   Sample sample;
   const bool of_doubles = analysis::any_in_doubles(campaign.sources);

@@ -2,7 +2,6 @@
 #include "fuzz/hunt/hunt.h"
 
 #include <sys/wait.h>
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
@@ -12,6 +11,7 @@
 #include <csignal>
 #include <set>
 
+#include "analysis/over_threads.h"
 #include "core/cannot.h"
 #include "core/error.h"
 #include "fuzz/campaign/result_files.h"
@@ -86,7 +86,7 @@ class Hunter {
 
   Outcome run() {
     try {
-      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_));
+      const tbb::global_control limit = analysis::thread_limit(threads_);
       tell_status();
       const std::uint64_t rounds = (share_.pairs + per_round_ - 1) / per_round_;
       for (std::uint64_t first = 0; first < rounds; first += kRoundsOfGeneration) {

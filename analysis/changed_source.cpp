@@ -19,8 +19,8 @@ DecidingNumber told(const Lane& lane, const std::vector<subjects::Epsilon>& numb
     if (result.line.empty()) result.line = place;
     result.words += fmt::format("{}{} at {}", result.words.empty() ? "" : ", ", number.name, place);
   }
-  result.words = fmt::format("with {:g} in place of {}{} it is right{}", subjects::kNegligible, result.words,
-                             doubles ? " and double in place of float" : "",
+  result.words = fmt::format("with {} in place of {}{} it is right{}", subjects::negligible_in_words(numbers),
+                             result.words, doubles ? " and double in place of float" : "",
                              on_images ? "" : ", but not in every order and mirror image in which it was wrong");
   return result;
 }

@@ -12,7 +12,7 @@ namespace graze::analysis {
 
 struct DecidingNumber {
   std::string line;   // the line of the first number, such as "mine.cpp:9"
-  std::string words;  // "with 1e-36 in place of 1e-6f at mine.cpp:9 it is right"
+  std::string words;  // "with 1e-36f in place of 1e-6f at mine.cpp:9 it is right"
   bool on_images;     // whether the changed code is right on the pair's images too
 };
 

@@ -115,7 +115,7 @@ TEST_F(ExperimentsOnSources, ANumberThatDecidesAtEveryScaleIsARelativeEpsilon) {
   EXPECT_TRUE(one.settled) << one.evidence;
   EXPECT_EQ(one.line, "relative.cpp:2");
   EXPECT_TRUE(
-      has(one.evidence, "with 1e-36 in place of 1e-2f at relative.cpp:2 it is right; it is wrong at all larger"))
+      has(one.evidence, "with 1e-36f in place of 1e-2f at relative.cpp:2 it is right; it is wrong at all larger"))
       << one.evidence;
   // At larger scales products overflow, because the first pair is too large and the second spans too many exponents.
   Pair wide = analysis::scaled(kFine, 18);
@@ -127,6 +127,38 @@ TEST_F(ExperimentsOnSources, ANumberThatDecidesAtEveryScaleIsARelativeEpsilon) {
     EXPECT_TRUE(has(open.evidence, "in place of 1e-2f")) << open.evidence;
     EXPECT_TRUE(has(open.evidence, "wrong at all larger scales that were tried, up to 2^")) << open.evidence;
   }
+}
+
+// An absolute epsilon may become negligible only at scales at which longer products than those of this code overflow.
+// Built in doubles, this code has no epsilon, so that test does not tell rounding from the epsilon either.
+TEST_F(ExperimentsOnSources, AnEpsilonThatVanishesOnlyAtHugeScalesIsNotSettled) {
+  const Lane& lane = opened("gap", std::string(kHead) + R"(  volatile float whole = 16777216;
+  whole = whole + 1;
+  const float tolerance = whole == 16777216 ? 0.1f : 0.0f;
+  for (int sign = -1; sign < 2; sign += 2) {
+    float low[2], high[2];
+    for (int t = 0; t < 2; ++t) {
+      const float* v = t ? b : a;
+      low[t] = high[t] = v[0] + sign * v[1];
+      for (int i = 3; i < 9; i += 3) {
+        const float x = v[i] + sign * v[i + 1];
+        low[t] = x < low[t] ? x : low[t];
+        high[t] = x > high[t] ? x : high[t];
+      }
+    }
+    if (low[1] > high[0] + tolerance || low[0] > high[1] + tolerance) return false;
+  }
+  return true;
+}
+)");
+  const Pair apart{{{0.7131f, -0.7131f, 0.31f}, {0.2133f, -0.8131f, 0.77f}, {-0.3177f, -0.513f, 1.13f}},
+                   {{0.3217f, -0.32169997f, 0.21f}, {0.9131f, 0.7133f, 0.517f}, {0.6171f, 0.337f, -0.713f}}};
+  const Experiment one = found(lane, apart);
+  EXPECT_EQ(one.cause, Cause::absolute_epsilon) << one.evidence;
+  EXPECT_FALSE(one.settled) << one.evidence;
+  EXPECT_TRUE(has(one.evidence, "it is wrong at all larger scales that were tried, up to 2^") &&
+              has(one.evidence, ", but right at 2^"))
+      << one.evidence;
 }
 
 // The epsilon has a length of its own: a fourth power of lengths is compared with a third power.

@@ -83,7 +83,7 @@ class Trial {
       }
     }
     std::optional<Experiment> precision = scale ? std::nullopt : by_precision();
-    if (precision && precision->settled) return *precision;
+    if (precision && precision->settled && !perhaps_vanishes_) return *precision;
     if (scale && scale->cause == Cause::absolute_epsilon && subjects::may_have_epsilon(lane_) == false)
       scale->cause = by_exponents_at(ask_.last_turn());
     for (std::optional<Experiment>* found : {&values, &number, &scale, &precision}) {
@@ -129,6 +129,14 @@ class Trial {
     return ask_.until(block_of(lane_), all.last);
   }
 
+  // The exponent of a larger scale at which the code is right; 0 if none is found.
+  int right_above() const {
+    for (const auto& [scale, right] : ask_.tried(lane_, {1, exact_scales(size_).last}, 64)) {
+      if (right) return scale;
+    }
+    return 0;
+  }
+
   // The exponent of a scale below the pair's own at which the code is right, one of these if possible; 0 if none is
   // found.
   int right_below(Scales usual) const {
@@ -150,23 +158,29 @@ class Trial {
     return found;
   }
 
-  std::optional<Experiment> by_number(const std::optional<Experiment>& scale) const {
+  std::optional<Experiment> by_number(const std::optional<Experiment>& scale) {
     const auto number = number_that_decides();
     if (!number) return std::nullopt;
     const std::optional<LargerScales> larger = at_larger_scales(), any = larger ? larger : at_any_larger_scales();
     const bool wrong_above = !scale && any && any->wrong;
     const Scales usual = scales_in_range(size_, lane_.scalar, kUsualFactors);
     const int below = wrong_above ? right_below(usual) : 0;
-    const bool in_range = below < 0 && usual.has(0) && usual.has(below), relative = wrong_above && !in_range;
+    // Beyond the usual scales, an epsilon may be negligible, or products that overflow may make the code right.
+    const int above = wrong_above ? right_above() : 0;
+    perhaps_vanishes_ = above != 0 && number->on_images;
+    const bool in_range = below < 0 && usual.has(0) && usual.has(below),
+               relative = wrong_above && above == 0 && !in_range;
     // An absolute epsilon becomes negligible at large scales, so the code must be right there.
     const bool settled =
-        number->on_images && below == 0 &&
+        number->on_images && below == 0 && above == 0 &&
         (scale ? scale->cause == Cause::absolute_epsilon && turns_in_range_ && ask_.last_turn().upwards()
                : larger.has_value());
     std::string text = number->words;
     if (scale) text += "; " + scale->evidence;
     if (wrong_above) text += "; it is wrong at " + any->text();
-    if (below < 0) text += fmt::format(", but right at 2^{}", below);
+    for (const int right : {above, below}) {
+      if (right != 0) text += fmt::format(", but right at 2^{}", right);
+    }
     return Experiment{relative ? Cause::relative_epsilon : Cause::absolute_epsilon, settled, std::move(text),
                       settled ? number->line : ""};
   }
@@ -415,10 +429,11 @@ class Trial {
   const Size size_;
   ImageVerdicts<Real> ask_;
   mutable std::optional<std::vector<PairOf>> wrong_images_;  // computed when first needed
-  Scales strictly_{1, 0};        // scales at which even the longest products stay within the exponents
-  bool turns_in_range_ = false;  // the verdict changes between two of these scales
-  Scales wrong_at_{1, 0};        // tried scales at which usual products stay within the exponents; empty unless the
-                                 // lane is wrong at all of these
+  Scales strictly_{1, 0};          // scales at which even the longest products stay within the exponents
+  bool turns_in_range_ = false;    // the verdict changes between two of these scales
+  bool perhaps_vanishes_ = false;  // a small number decides, perhaps an absolute epsilon
+  Scales wrong_at_{1, 0};          // tried scales at which usual products stay within the exponents; empty unless the
+                                   // lane is wrong at all of these
 };
 
 }  // namespace

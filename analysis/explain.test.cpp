@@ -157,6 +157,23 @@ TEST(Explain, BitsThatAreEnoughOnlyWithMoreExponentsAreSaidSo) {
   EXPECT_NE(text.find("26 mantissa bits would be enough with unlimited exponents"), std::string::npos) << text;
 }
 
+// A lane whose cause differs is named with it, as a guess unless the cause is settled.
+TEST(Explain, OtherCausesAreGuessesUnlessSettled) {
+  Explanation explanation = explain(strata::generate(3, strata::Stratum::near_edge_edge, 100), lanes_here());
+  const Lane* lane = find_lane("moller_1997/f32/cpu");
+  std::erase_if(explanation.lanes, [&](const LaneExplanation& one) { return one.lane != lane; });
+  ASSERT_EQ(explanation.lanes.size(), 1u);
+  explanation.lanes.push_back(explanation.lanes[0]);
+  explanation.lanes[1].lane = find_lane("moller_1997/f32/cpu-fast");
+  explanation.lanes[1].cause = Cause::fast_math;
+  for (const auto& [settled, words] :
+       {std::pair(Settled::yes, "cpu-fast (fast math)"), std::pair(Settled::unknown, "cpu-fast (perhaps fast math)")}) {
+    explanation.lanes[1].settled = settled;
+    const std::string text = sentence(explanation, lane->info);
+    EXPECT_NE(text.find(words), std::string::npos) << text;
+  }
+}
+
 // Exact arithmetic divides by zero on the lane's path, so the compared numbers have no exact values.
 TEST(Explain, NumbersThatExactArithmeticDoesNotDefineAreNotGivenExactly) {
   const Pair pair{{{0, 0, 0}, {0x1.a59p-3f, 0x1.ad0cep-2f, -0x1.fb2cp+0f}, {0x1.96b08p+0f, 0, -0x1.5a92p+1f}},

@@ -303,8 +303,8 @@ std::string sentence(const Explanation& explanation, const AlgorithmInfo* subjec
     if (alike(*first, lane)) {
       same += fmt::format("{}{}", same.empty() ? "" : ", ", variant);
     } else {
-      others +=
-          fmt::format("{}{}/{} ({})", others.empty() ? "" : ", ", name(lane.lane->scalar), variant, name(lane.cause));
+      others += fmt::format("{}{}/{} ({}{})", others.empty() ? "" : ", ", name(lane.lane->scalar), variant,
+                            lane.settled == Settled::yes ? "" : "perhaps ", name(lane.cause));
     }
   }
   const Lane& lane = *first->lane;

@@ -204,7 +204,7 @@ TEST_F(TwoExperiments, AnEpsilonAndRoundingTogetherAreNamed) {
   for (const auto& [limit, cause] : {std::pair("1e-6f", "absolute epsilon"), {"1e-6f * s", "relative epsilon"}}) {
     const std::string found = explained(gap, limit, pair);
     EXPECT_TRUE(found.starts_with(std::string(cause) + ": ")) << found;
-    EXPECT_TRUE(has(found, {"with 1e-36 in place of 1e-6f at gap.cpp:8 and double in place of float it is right, with "
+    EXPECT_TRUE(has(found, {"with 1e-36f in place of 1e-6f at gap.cpp:8 and double in place of float it is right, with "
                             "either alone wrong"}));
   }
 }

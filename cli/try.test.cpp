@@ -306,11 +306,12 @@ TEST_F(TryCommand, TheCommandForMorePairsRunsAsItStands) {
   EXPECT_EQ(more["earlier"], "my try.1");
 }
 
-// Returns the counts in "1 of the 146 wrong pairs become right, and 2 right ones wrong."
+// Returns the counts in "1 of the 146 wrong pairs are no longer wrong, and 2 others become wrong."
 std::vector<int> counts_in(const std::string& sentence) {
   std::vector<int> counts;
   std::smatch found;
-  if (std::regex_search(sentence, found, std::regex(", (\\d+) of the (\\d+) wrong pairs? become right, and (\\d+) ")))
+  if (std::regex_search(sentence, found,
+                        std::regex(", (\\d+) of the (\\d+) wrong pairs? are no longer wrong, and (\\d+) ")))
     counts = {std::stoi(found[1]), std::stoi(found[2]), std::stoi(found[3])};
   return counts;
 }
@@ -323,6 +324,7 @@ TEST_F(TryCommand, NamesTheEpsilonAndTheCommandThatTunesIt) {
   EXPECT_EQ(one["tune"], "graze tune one/f32/cpu --from try");
   EXPECT_EQ(one["why_not_tuned"], "");
   // The stated effect equals that of replacing the epsilon by a negligible number.
+  EXPECT_TRUE(one["epsilon"].get<std::string>().starts_with("Epsilon: with 1e-36f in place of ")) << one["epsilon"];
   write("tiny.cpp", by_x + "1e-36f; }\n");
   const auto changed = counts_in(one["epsilon"]);
   ASSERT_EQ(changed.size(), 3u) << one["epsilon"];

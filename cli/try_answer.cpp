@@ -97,6 +97,7 @@ std::optional<reports::EpsilonEffect> effect_of(const Lane& own, const std::vect
   const auto changed = numbers.empty() ? nullptr : subjects::changed(own, {.negligible = numbers});
   if (!changed) return std::nullopt;
   reports::EpsilonEffect effect;
+  effect.by = subjects::negligible_in_words(numbers);
   const std::filesystem::path& file = subjects::opened(own.lane_name().subject)->file;
   for (const subjects::Epsilon& number : numbers)
     effect.named += (effect.named.empty() ? "" : " and ") + epsilon_in_words(file, number);

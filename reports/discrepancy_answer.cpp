@@ -97,11 +97,12 @@ std::string start_sentence(const std::vector<const Json*>& lanes) {
       std::max_element(starts.begin(), starts.end(), [](const auto& l, const auto& r) { return l.second < r.second; });
   return fmt::format("{} of the {} traced values that differ start to differ at {}.{}", rate_words(top->second, all),
                      grouped(all), top->first,
-                     changed == 0
-                         ? " No traced verdict changes."
-                         : fmt::format(" Leaving only the products of {} unfused restores {} of the verdicts that "
-                                       "contraction changes, more than for any other line.",
-                                       top_line, grouped(fixed)));
+                     changed == 0 ? " No traced verdict changes."
+                     : fixed == 0 ? " Leaving only one line's products unfused restores none of the verdicts that "
+                                    "contraction changes."
+                                  : fmt::format(" Leaving only the products of {} unfused restores {} of the verdicts "
+                                                "that contraction changes; no other line restores more.",
+                                                top_line, grouped(fixed)));
 }
 
 std::string nearer_sentence(const std::vector<const Json*>& lanes) {

@@ -240,9 +240,9 @@ std::string pair_on_a_line(const AnyPair& pair) {
 std::string epsilon_words(const CampaignCounts& counts, std::size_t lane, const Json& kinds,
                           const std::string& in_source, const std::optional<EpsilonEffect>& effect) {
   if (effect)
-    return fmt::format("Epsilon: with {:g} in place of {}, {} of the {} become right, and {} wrong.",
-                       subjects::kNegligible, effect->named, grouped(effect->mended),
-                       counted(counts.total.wrong(lane), "wrong pair"), counted(effect->broken, "right one"));
+    return fmt::format("Epsilon: with {} in place of {}, {} of the {} are no longer wrong, and {} others become wrong.",
+                       effect->by, effect->named, grouped(effect->mended),
+                       counted(counts.total.wrong(lane), "wrong pair"), grouped(effect->broken));
   std::uint64_t pairs = 0, settled = 0, of = 0;
   for (const Json& kind : kinds) {
     if (!is_of_lane(kind, counts.lanes[lane].id) ||

@@ -67,8 +67,8 @@ std::string pair_on_a_line(const AnyPair& pair);
 
 // The effect of replacing the epsilon by subjects::kNegligible, on the campaign's pairs.
 struct EpsilonEffect {
-  std::string named;                     // "1e-6f at mine.cpp:9"
-  std::uint64_t mended = 0, broken = 0;  // wrong pairs that become right; right pairs that become wrong
+  std::string named, by;                 // "1e-6f at mine.cpp:9"; "1e-36f"
+  std::uint64_t mended = 0, broken = 0;  // wrong pairs that are no longer wrong; others that become wrong
 };
 
 // Describes whether failures of the lane show an absolute epsilon, and from which margin upwards the lane is right.

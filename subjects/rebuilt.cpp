@@ -189,6 +189,12 @@ bool selects_by_build(const Lane& lane) {
 
 bool has_source_as_built(const Lane& lane) { return !source_as_built(lane).empty(); }
 
+std::string negligible_in_words(const std::vector<Epsilon>& numbers) {
+  std::set<std::string> words;
+  for (const Epsilon& number : numbers) words.insert(written_value(number, kNegligible));
+  return words.size() == 1 ? *words.begin() : fmt::format("{:g}", kNegligible);
+}
+
 std::optional<bool> may_have_epsilon(const Lane& lane) {
   const Opened* subject = lane.foreign ? opened(lane.lane_name().subject) : nullptr;
   if (!subject || (subject->kind != "source" && subject->kind != "cuda")) return std::nullopt;

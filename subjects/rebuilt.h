@@ -41,6 +41,8 @@ std::unique_ptr<ForeignProcesses> rebuilt(const Lane& lane, const std::string& t
 // The number that replaces an epsilon. This number is normal in float32. It is positive, so a comparison of 0 with it
 // has the same outcome as with the epsilon.
 inline constexpr double kNegligible = 1e-36;
+// In the notation of the numbers, which decides its type: "1e-36f". Without a suffix if they have different ones.
+std::string negligible_in_words(const std::vector<Epsilon>& numbers);
 struct Change {
   std::vector<Epsilon> negligible = {};  // `value` replaces these numbers
   double value = kNegligible;

@@ -161,6 +161,17 @@ TEST_F(ExperimentsOnSources, AnEpsilonThatVanishesOnlyAtHugeScalesIsNotSettled) 
       << one.evidence;
 }
 
+// This code is wrong in half of the orders and declines in the others.
+TEST_F(ExperimentsOnSources, CodeThatDeclinesInSomeOrdersIsNotWrongInAll) {
+  std::ofstream(folder_ / "declines.cpp") << "int intersects(const float a[9], const float b[9]) {\n"
+                                             "  return a[0] == 0 || b[0] == 0 ? -1 : 0;\n}\n";
+  subjects::open({"declines", folder_ / "declines.cpp", {}});
+  const Pair meets{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{1, 0, 0}, {2, 1, 0}, {2, 0, 1}}};
+  const Experiment one = found(*find_lane("declines/f32/cpu"), meets);
+  EXPECT_FALSE(one.settled) << one.evidence;
+  EXPECT_TRUE(has(one.evidence, "it declines some of the pairs that were tried")) << one.evidence;
+}
+
 // The epsilon has a length of its own: a fourth power of lengths is compared with a third power.
 TEST_F(ExperimentsOnSources, AnEpsilonThatVanishesAtSmallScalesIsNotSettledAsRelative) {
   const Lane& lane = opened("powers", std::string(kHead) +

@@ -38,6 +38,10 @@ class Trial {
   Experiment run(bool unstable) {
     Experiment found = unstable ? cause_of_unstable() : cause();
     found.asked = ask_.verdicts();
+    if (ask_.declined_some()) {
+      found.settled = false;
+      found.evidence += "; it declines some of the pairs that were tried, which count as wrong here";
+    }
     if (!ask_.gave_up()) return found;
     found.settled = false;
     found.slow = true;

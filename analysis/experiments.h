@@ -44,6 +44,7 @@ namespace graze::analysis {
 //                pair's 72 orders the code is wrong. For logic, the code is wrong in all orders.
 //   rounding     the code is right in float64 at every scale, and wrong in float32 at every scale in the exponent
 //                range. If it has no function of doubles, its source with double in place of float serves as one.
+// A declined verdict is not right, so it counts as wrong here, and nothing is settled if there is one.
 // If no cause can be shown, the result is not settled, and the cause is a guess. The guess is an epsilon if negligible
 // numbers and double in place of float together make the code right: a relative epsilon if the code is wrong in doubles
 // at all larger scales. Otherwise the guess depends on the pair's images: order-dependent if the code is right only on

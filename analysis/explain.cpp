@@ -61,7 +61,7 @@ struct Neighbours {
 template <class Real>
 WrongOf wrong_of(const Lane& lane, const std::vector<BasicPair<Real>>& pairs, Verdict truth) {
   const std::vector<Verdict> said = verdicts_of(block_of(lane), pairs);
-  const auto wrong = std::count_if(said.begin(), said.end(), [truth](Verdict verdict) { return verdict != truth; });
+  const auto wrong = std::count_if(said.begin(), said.end(), [truth](Verdict v) { return is_wrong(v, truth); });
   return {static_cast<int>(wrong), static_cast<int>(pairs.size())};
 }
 
@@ -276,8 +276,8 @@ void add_surroundings(LaneExplanation& result, Verdict truth, const Neighbours<R
   result.scalings = wrong_of(lane, neighbours.scalings, truth);
   for (std::size_t c = 0; c < kCoordinates; ++c) {
     const auto& nudged = neighbours.nudged[c];
-    result.matters[c] =
-        !neighbours.truth_stays[c] || wrong_of(lane, nudged, truth).wrong < static_cast<int>(nudged.size());
+    const std::vector<Verdict> said = verdicts_of(block_of(lane), nudged);
+    result.matters[c] = !neighbours.truth_stays[c] || std::find(said.begin(), said.end(), truth) != said.end();
   }
 }
 

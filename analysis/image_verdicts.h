@@ -63,6 +63,7 @@ class ImageVerdicts {
     asked_ += static_cast<int>(pairs.size());
     std::vector<Verdict> verdicts = verdicts_of(block, pairs);
     late_ += static_cast<int>(std::count(verdicts.begin(), verdicts.end(), Verdict::timed_out));
+    declined_ += static_cast<int>(std::count(verdicts.begin(), verdicts.end(), Verdict::declined));
     return verdicts;
   }
 
@@ -166,6 +167,7 @@ class ImageVerdicts {
 
   int verdicts() const { return asked_; }
   bool gave_up() const { return late_ >= kMostLate; }
+  bool declined_some() const { return declined_ > 0; }
   Turn last_turn() const { return last_turn_; }
 
  private:
@@ -174,7 +176,7 @@ class ImageVerdicts {
   const Lane& lane_;
   const PairOf& pair_;
   const Verdict truth_;
-  mutable int asked_ = 0, late_ = 0;  // numbers of verdicts asked for, and of those that timed out
+  mutable int asked_ = 0, late_ = 0, declined_ = 0;  // numbers of verdicts asked for, that timed out, that declined
   mutable std::optional<subjects::ChangedCode> doubles_;
   mutable Turn last_turn_{0, 0};
 };

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <regex>
 
+#include "analysis/discrepancy.h"
+#include "analysis/lane_trace.h"
 #include "analysis/tuning.h"
 #include "reports/possible_counts.h"
 #include "reports/terminal.h"
@@ -187,6 +189,27 @@ TEST_F(DiscrepancyResult, ThePageNamesEveryQuestionThatDiffers) {
   // The source text of a fused line.
   EXPECT_NE(page.find("return u.x * v.x + u.y * v.y + u.z * v.z;"), std::string::npos);
   EXPECT_EQ(page.find("<script"), std::string::npos);
+}
+
+// A recorded run is compiled separately, so with contraction its verdict may be another one than the lane's.
+TEST(SideBySide, NamesTheVerdictOfTheLaneAndOfItsRecordedRun) {
+  const analysis::LanesCompared lanes(*find_lane("interval_overlap/f32/cpu"),
+                                      *find_lane("interval_overlap/f32/cpu-fma"));
+  int unlike = 0;
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    const AnyPair pair = strata::generate(1, strata::Stratum::near_vertex_face, i);
+    const Verdict own = analysis::decide_lane(*lanes.second, pair),
+                  recorded = recorded_verdict(analysis::runs_beside(lanes, pair).second.path);
+    unlike += own != recorded;
+    const std::string said = side_by_side(lanes, pair, Screen{400, false}),
+                      words = fmt::format("second: interval_overlap/f32/cpu-fma, {}{}: ", name(recorded),
+                                          own == recorded ? ""
+                                                          : fmt::format(" in its recorded run, which is compiled "
+                                                                        "separately from the lane itself ({})",
+                                                                        name(own)));
+    EXPECT_NE(said.find(words), std::string::npos) << i << '\n' << said;
+  }
+  fmt::print("unlike their recorded run: {}\n", unlike);
 }
 
 }  // namespace

@@ -33,8 +33,10 @@ std::string unlike_words(const Json& json) {
   for (const Json& of : json.at("lanes")) {
     for (int lane = 0; lane < 2; ++lane) {
       if (const std::uint64_t unlike = of.at("total").at("unlike").at(lane); unlike > 0)
-        text += fmt::format(" On {} pairs the verdict of {} differs from that of its recorded run.", grouped(unlike),
-                            text_at(of, lane == 0 ? "first" : "second"));
+        text += fmt::format(
+            " On {} pairs the verdict of {} differs from that of its recorded run, which is compiled "
+            "separately and counted here.",
+            grouped(unlike), text_at(of, lane == 0 ? "first" : "second"));
     }
   }
   return text;

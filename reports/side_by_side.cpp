@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "analysis/lane_trace.h"
 #include "core/discrepancy/count.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
@@ -47,6 +48,15 @@ bool goes_otherwise(const Question& question, const ValueBeside* left, const Val
                            question.at_most);
 }
 
+// "disjoint"; if the lane itself answers otherwise, "disjoint in its recorded run, which is compiled separately from
+// the lane itself (intersects)".
+std::string verdicts_in_words(const Lane& lane, const AnyPair& pair, const RecordedPath& recorded) {
+  const Verdict there = recorded_verdict(recorded.path), own = lane.decide ? analysis::decide_lane(lane, pair) : there;
+  return own == there ? std::string(name(there))
+                      : fmt::format("{} in its recorded run, which is compiled separately from the lane itself ({})",
+                                    name(there), name(own));
+}
+
 }  // namespace
 
 std::string side_by_side(const analysis::LanesCompared& lanes, const AnyPair& pair, const Screen& screen) {
@@ -75,13 +85,14 @@ std::string side_by_side(const analysis::LanesCompared& lanes, const AnyPair& pa
                value_text(value.second, scalar), Cell(apart, apart != "0" && apart != "-"), exact_text(value),
                error_text(value.first, value, scalar), error_text(value.second, value, scalar), Cell(note, other)});
   }
-  const Verdict first = recorded_verdict(runs.first.path), second = recorded_verdict(runs.second.path);
+  const std::string first = verdicts_in_words(*lanes.first, pair, runs.first),
+                    second = verdicts_in_words(*lanes.second, pair, runs.second);
   const std::string values = differs
                                  ? otherwise ? "a comparison goes the other way" : "values differ, no comparison does"
                                  : "every value has the same bits";
   return wrapped(fmt::format("first: {}, {}; second: {}, {}: {}. Errors are in ulps of the exact value along the first "
                              "lane's path.",
-                             lanes.first->id, name(first), lanes.second->id, name(second), values),
+                             lanes.first->id, first, lanes.second->id, second, values),
                  screen.columns, 2, 4) +
          table.text(screen, 2);
 }

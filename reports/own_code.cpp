@@ -30,9 +30,11 @@ std::string errors_in_words(const analysis::LaneCounts& found) {
 
 std::string not_counted(const analysis::LaneCounts& found) {
   std::string text;
-  if (found.declined > 0) text += fmt::format(" It declines {}.", counted(found.declined, "pair"));
+  if (found.declined > 0)
+    text += fmt::format(" It declines {}{}.", counted(found.declined, "pair"),
+                        found.by_convention > 0 ? " that its convention covers" : "");
   if (found.by_convention > 0)
-    text += fmt::format(" It differs on {} for which its convention promises nothing.",
+    text += fmt::format(" It differs or declines on {} for which its convention promises nothing.",
                         counted(found.by_convention, "pair"));
   return text;
 }
@@ -118,8 +120,7 @@ std::string wrong_words(const CampaignCounts& counts, std::size_t lane) {
     if (decided == 0) return fmt::format("{} decides none of {} pairs.{}", id, pairs, not_counted(found));
     // The pairs that its convention covers are not counted, so nothing can be said of their rate.
     if (found.by_convention > 0)
-      return fmt::format("{} is wrong on none of the {} that it decides.{}", id, counted(decided, "pair"),
-                         not_counted(found));
+      return fmt::format("{} is wrong on none of {}.{}", id, counted(counts.total.pairs, "pair"), not_counted(found));
     return fmt::format(
         "{} is wrong on none of the {} that it decides: with 95 % confidence it errs on fewer than {} of such pairs.{}",
         id, counted(decided, "pair"), rate_words(bound_of_none(decided), Bound::upper), not_counted(found));

@@ -73,8 +73,12 @@ TEST(OwnCode, WithoutErrorsSaysHowMuchTheDecidedPairsProve) {
   CampaignCounts with_convention = counts_of(summary_of({"mine/f32/cpu"}, {"uniform"}, {0, 0, 0, 0}));
   with_convention.total.lanes[0].by_convention = 100;  // the code decides these pairs too
   EXPECT_EQ(wrong_words(with_convention, 0),
-            "mine/f32/cpu is wrong on none of the 1,000 pairs that it decides. It differs on 100 pairs for "
-            "which its convention promises nothing.");
+            "mine/f32/cpu is wrong on none of 1,000 pairs. It differs or declines on 100 pairs for which its "
+            "convention promises nothing.");
+  with_convention.total.lanes[0].declined = 20;
+  EXPECT_EQ(wrong_words(with_convention, 0),
+            "mine/f32/cpu is wrong on none of 1,000 pairs. It declines 20 pairs that its convention covers. It differs "
+            "or declines on 100 pairs for which its convention promises nothing.");
   EXPECT_EQ(words({0, 0, 1000, 0}), "mine/f32/cpu decides none of 1,000 pairs. It declines 1,000 pairs.");
   EXPECT_EQ(other_builds(counts_of(summary_of({"mine/f32/cpu"}, {"uniform"}, {0, 0, 0, 0})), 0), "");
 }

@@ -133,9 +133,9 @@ class Trial {
     return ask_.until(block_of(lane_), all.last);
   }
 
-  // The exponent of a larger scale at which the code is right; 0 if none is found.
-  int right_above() const {
-    for (const auto& [scale, right] : ask_.tried(lane_, {1, exact_scales(size_).last}, 64)) {
+  // The least exponent of these scales, of which `most` are tried, at which the code is right; 0 if none is found.
+  int right_among(Scales scales, int most) const {
+    for (const auto& [scale, right] : ask_.tried(lane_, scales, most)) {
       if (right) return scale;
     }
     return 0;
@@ -144,12 +144,8 @@ class Trial {
   // The exponent of a scale below the pair's own at which the code is right, one of these if possible; 0 if none is
   // found.
   int right_below(Scales usual) const {
-    for (const Scales scales : {usual, exact_scales(size_)}) {
-      for (const auto& [scale, right] : ask_.tried(lane_, {scales.first, -1}, 12)) {
-        if (right) return scale;
-      }
-    }
-    return 0;
+    const int found = right_among({usual.first, -1}, 12);
+    return found != 0 ? found : right_among({exact_scales(size_).first, -1}, 12);
   }
 
   // Adds the number in the source that decides the verdict, if it is known.
@@ -170,7 +166,7 @@ class Trial {
     const Scales usual = scales_in_range(size_, lane_.scalar, kUsualFactors);
     const int below = wrong_above ? right_below(usual) : 0;
     // Beyond the usual scales, an epsilon may be negligible, or products that overflow may make the code right.
-    const int above = wrong_above ? right_above() : 0;
+    const int above = wrong_above ? right_among({1, exact_scales(size_).last}, 64) : 0;
     perhaps_vanishes_ = above != 0 && number->on_images;
     const bool in_range = below < 0 && usual.has(0) && usual.has(below),
                relative = wrong_above && above == 0 && !in_range;

@@ -27,9 +27,8 @@ namespace graze::analysis {
 //                times the number, because code that multiplies by a conversion factor may be right with 1e-36 if
 //                products underflow. The unchanged code must be right at some larger scale at which no product of
 //                kUsualFactors leaves the exponent range.
-//   relative epsilon   a small number decides in the same way, but the unchanged code is wrong at all larger scales
-//   that
-//                were tried, even where products leave the exponent range.
+//   relative epsilon   a small number decides in the same way, but the unchanged code is wrong at all larger scales,
+//                as far as they were tried, even where products leave the exponent range.
 //   uninitialised   the verdict depends on the value that the compiler gives to uninitialised variables. This is also
 //                the cause if any value makes the verdict right and the compiler warns about such a variable; the
 //                coordinates must then be small integers times a power of two, so that different machine code hardly

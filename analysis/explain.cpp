@@ -275,9 +275,10 @@ void add_surroundings(LaneExplanation& result, Verdict truth, const Neighbours<R
   result.mirrored = wrong_of(lane, neighbours.mirrored, truth);
   result.scalings = wrong_of(lane, neighbours.scalings, truth);
   for (std::size_t c = 0; c < kCoordinates; ++c) {
-    const auto& nudged = neighbours.nudged[c];
-    const std::vector<Verdict> said = verdicts_of(block_of(lane), nudged);
-    result.matters[c] = !neighbours.truth_stays[c] || std::find(said.begin(), said.end(), truth) != said.end();
+    result.matters[c] = !neighbours.truth_stays[c];
+    if (result.matters[c]) continue;
+    const std::vector<Verdict> said = verdicts_of(block_of(lane), neighbours.nudged[c]);
+    result.matters[c] = std::find(said.begin(), said.end(), truth) != said.end();
   }
 }
 

@@ -20,7 +20,7 @@ std::string place_of(const std::string& text) { return text.substr(0, text.find(
 
 // The totals in the headline: how many verdicts changed, and in which lanes.
 struct ChangedTotals {
-  std::uint64_t lanes = 0, verdicts = 0, least = 0, most = 0, wrong = 0, right = 0, unknown_most = 0;
+  std::uint64_t lanes = 0, verdicts = 0, least = 0, most = 0, broken = 0, mended = 0, unknown_most = 0;
   std::set<std::string> changed, unknown;
   bool counted = true;  // whether the number of changed verdicts is exact
 };
@@ -43,8 +43,8 @@ ChangedTotals totals_of(const Json& verdicts) {
     totals.counted &= counted;
     totals.least += least;
     totals.most += most;
-    totals.wrong += row.value("broken", std::uint64_t{0});
-    totals.right += row.value("mended", std::uint64_t{0});
+    totals.broken += row.value("broken", std::uint64_t{0});
+    totals.mended += row.value("mended", std::uint64_t{0});
   }
   totals.lanes = lanes.size();
   return totals;
@@ -67,9 +67,9 @@ std::string paired_headline(const Json& verdicts) {
   if (!totals.counted)
     return fmt::format("Changed: at least {} {}, and at most {}{}", counted(totals.least, "verdict"), lanes,
                        grouped(totals.most), unknown);
-  const std::uint64_t otherwise = totals.most - totals.wrong - totals.right;
+  const std::uint64_t otherwise = totals.most - totals.broken - totals.mended;
   return fmt::format("Changed: {} {}: {} became wrong, {} no longer wrong{}{}", counted(totals.most, "verdict"), lanes,
-                     grouped(totals.wrong), grouped(totals.right),
+                     grouped(totals.broken), grouped(totals.mended),
                      otherwise == 0 ? "" : fmt::format(", {} changed otherwise", grouped(otherwise)), unknown);
 }
 

@@ -143,9 +143,10 @@ CampaignCounts counts_of(const Json& summary) {
 }
 
 std::string described(std::string_view drawn, bool in_doubles, const Json& spec) {
-  return fmt::format("{}{}{}", in_doubles ? "in doubles: " : "", spec.contains("scene") ? "without a scene, " : "",
-                     drawn) +
-         (spec.contains("scene") ? "; here with the sizes, shapes and positions that the scene allows" : "");
+  const std::string type = in_doubles ? "in doubles: " : "";
+  if (!spec.contains("scene")) return type + std::string(drawn);
+  return fmt::format("{}without a scene, {}; here with the sizes, shapes and positions that the scene allows", type,
+                     drawn);
 }
 
 }  // namespace graze::reports

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/text.h"
 #include "fuzz/counts_json.h"
@@ -113,10 +114,11 @@ std::string pareto_table(const Pareto& pareto, const Screen& screen) {
                                  {"declined"},
                                  {"", Align::left}};
   const auto any = [&](auto count) {
-    return std::any_of(pareto.offers.begin(), pareto.offers.end(), [&](const Offer& o) { return count(o.errors) > 0; });
+    return std::any_of(pareto.offers.begin(), pareto.offers.end(),
+                       [&](const Offer& offer) { return std::invoke(count, offer.errors) > 0; });
   };
-  const bool any_failed = any([](const PolicyErrors& e) { return e.failed(); });
-  const bool any_by_convention = any([](const PolicyErrors& e) { return e.by_convention; });
+  const bool any_failed = any(&Counts::failed);
+  const bool any_by_convention = any(&Counts::by_convention);
   const std::vector<Column> more = pareto.on_device ? std::vector<Column>{{"registers"}, {"local bytes"}, {"threads"}}
                                                     : std::vector<Column>{{"one a call", Align::point}};
   columns.insert(columns.begin() + 3, more.begin(), more.end());
